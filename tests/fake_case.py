@@ -19,11 +19,5 @@ class FakeCase(Case):
 
 def row(name: str, case: str = "", **changed) -> Row:
     """A row that holds a value to a tenth of another, or with what is changed of it."""
-    said = {
-        "quantity": name,
-        "metric": "relative",
-        "tolerance": 0.1,
-        "reason": "because",
-        "kind": "exact",
-    }
+    said = {"quantity": name, "metric": "relative", "tolerance": 0.1, "reason": "because", "kind": "exact"}
     return Row(id=name, case=case or name.partition(".")[0], **said | changed)

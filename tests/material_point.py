@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A material point under given strains and stresses, with the return map of either model: closed forms of
-uniaxial tension and shear are compared with it.
-"""
+"""A material point under given strains and stresses, with the return map of either model."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The start of an elasto-plastic load history in the semi-analytical model, for tests of single steps and of
-the first box.
-"""
+"""The start of an elasto-plastic load history in SAM, for tests of single steps and of the first box."""
 
 from __future__ import annotations
 
@@ -19,9 +17,7 @@ from sam.scene import Scene
 
 
 def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tuple[Model, Progressed]:
-    """The model of a scene, and the record before its first step, on the first box of the scene or on another
-    one.
-    """
+    """The model of a scene, and the record before its first step, on the scene's first box or another."""
     plan = sam.plan(scene)
     model = model_of(plan, plan.problem(Counters()))
     if extent is not None:

@@ -6,27 +6,17 @@ Machines add in another order and fuse multiplications with additions (BLAS, LAP
 digits of elementary functions (numpy and libm: up to 4 EPS). What consists of + - * / and square roots in a
 given order is the same on each of them. Where a test asks 1e-12 of a formula without a reason beside it, that
 is 4500 EPS: fewer than a thousand roundings, and no cancellation.
-
-Numbers of iterations are asked to be equal, in other units say, only where an iteration stops far above
-rounding: of a contact, rounding moves a relative residual r by up to 1e-12/r of itself, so at 1e-10 one solve
-in some hundred would stop an iteration earlier or later, at 1e-7 one in a hundred thousand.
 """
 
 import numpy as np
 import pytest
 
 EPS = float(np.finfo(float).eps)
-FAR = 1e-7  # residual of a contact, far above rounding
 
 
 def close(expected, rel: float = 1e-14):
     """Relative only: many a depth or volume in SI units is below pytest's absolute tolerance of 1e-12."""
     return pytest.approx(expected, rel=rel, abs=0)
-
-
-def of_sum(terms) -> float:
-    """n eps sum |x|: a sum, or a scalar product with these n products, in any order (section 4.2)."""
-    return np.size(terms) * EPS * float(np.abs(terms).sum())
 
 
 def of_least_squares(matrix: np.ndarray) -> float:

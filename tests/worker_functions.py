@@ -4,7 +4,6 @@
 import os
 import signal
 import time
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 MARKER = "SAMFEM_TEST_MARKER"
@@ -25,10 +24,6 @@ def environment() -> dict[str, str]:
     return dict(os.environ)
 
 
-def process_id() -> int:
-    return os.getpid()
-
-
 def sleep(seconds: float) -> None:
     time.sleep(seconds)
 
@@ -37,18 +32,8 @@ def die(_value: float = 0.0) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def die_once_while_sending(marker: str) -> str:
-    """The worker is killed when a part of this result is written, the first time."""
-    if not Path(marker).exists():
-        Path(marker).touch()
-        Connection._send = lambda pipe, message: os.write(pipe.fileno(), message[:-1]) and die()
-    return "received"
-
-
 def solve_but_die_once(scene, model, code, *how):
-    """The worker of the special scene is killed, the first time; the marker is beside the `title` of the
-    scene.
-    """
+    """The worker of the special scene is killed, the first time; the marker is MARKER."""
     from samfem.sweeping import solve_scene
 
     marker = Path(os.environ[MARKER])
@@ -62,20 +47,6 @@ def solve_but_die(scene, model, code, *how):
     from samfem.sweeping import solve_scene
 
     return die() if scene.loading.force == SPECIAL else solve_scene(scene, model, code, *how)
-
-
-def solve_but_raise(scene, model, code, *how):
-    """The solver of the special scene raises."""
-    from samfem.sweeping import solve_scene
-    from verification.runs import models
-
-    if scene.loading.force != SPECIAL:
-        return solve_scene(scene, model, code, *how)
-    original, models.solve = models.solve, lambda *_, **__: fail(0.0)
-    try:
-        return solve_scene(scene, model, code, *how)
-    finally:
-        models.solve = original
 
 
 def solved(asked):

@@ -1,22 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the axisymmetric model returns: record, steps, cycles, units, statuses, estimates, what it refuses."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
-from builders import (
-    MODULUS,
-    PERFECT,
-    RADIUS,
-    SHAPES,
-    SPHERE,
-    SWIFT,
-    SWIFT_YIELD,
-    hertz_force,
-    scene as small_scene,
-)
+from builders import MODULUS, PERFECT, RADIUS, SHAPES, SPHERE, SWIFT, hertz_force, scene as small_scene
 from rounding import close
 
 import fem_reference
@@ -70,31 +57,6 @@ def test_record_is_complete():
     assert area.sum() == pytest.approx(result.discretisation["box_m"] ** 2, rel=1e-12)
 
 
-def test_record_of_a_body_that_yields():
-    """Strains in every table and field, those of the history at the peak and after it."""
-    result = fem_reference.solve(
-        scene(plasticity=SWIFT, force=hertz_force(4 * SWIFT_YIELD), steps=10, unload=True)
-    )
-    h, q = result.tables["history"], result.quantities
-    assert h["step"] == list(range(1, 12)) and h["peeq_max"][9] == q["peeq_max"] == h["peeq_max"][10]
-    assert list(np.diff(h["peeq_max"]) >= 0) == [True] * 10
-    assert h["note"] == [""] * 10 + ["elastic: unloading in one step"]
-    assert result.tables["plane"]["peeq"].max() <= q["peeq_max"]
-    cells = result.fields.cell_data
-    # monotone loading: accumulated strain is about the size of the plastic strain, whose trace is zero
-    strain = cells["plastic_strain"]
-    size = np.sqrt(2 / 3 * ((strain[:, :3] ** 2).sum(axis=1) + 2 * (strain[:, 3:] ** 2).sum(axis=1)))
-    assert np.abs(strain[:, :3].sum(axis=1)).max() < 1e-15
-    assert size.max() == pytest.approx(cells["peeq"].max(), rel=2e-2)
-    assert max(result.certificate.values()) < 1e-8 and result.certificate["yield_excess"] < 1e-10
-    assert 0 < q["residual_uz_center_m"] < q["approach_m"]
-    assert 0 < q["residual_mises_max_Pa"] < q["mises_max_Pa"]
-    line = result.tables["line"]
-    after = line["state"] == "unloaded"
-    assert not line["p_Pa"][after].any()
-    assert line["gap_m"][after].min() == pytest.approx(0.0, abs=1e-15)  # the counter-body just touches
-
-
 def test_a_punch_is_singular_and_has_no_gap_beside_it():
     result = fem_reference.solve(scene(counter=PUNCH))
     line = {name: np.asarray(values) for name, values in result.tables["line"].items()}
@@ -103,17 +65,6 @@ def test_a_punch_is_singular_and_has_no_gap_beside_it():
     assert not line["p_Pa"][beside].any() and np.isnan(line["gap_m"][beside]).all()
     assert any("singular" in warning for warning in result.warnings)
     assert max(result.certificate.values()) < 1e-8
-
-
-def test_path_does_not_matter():
-    """Elastic and frictionless: ten steps end where one step does, up to the rounding of the solver."""
-    one, ten = (fem_reference.solve(scene(steps=n)) for n in (1, 10))
-    for name, value in one.quantities.items():
-        assert ten.quantities[name] == (None if value is None else close(value, 1e-9)), name
-    history = ten.tables["history"]
-    assert history["force_N"] == pytest.approx(0.65 * np.arange(1, 11) / 10, rel=1e-15)
-    # the scaled set is right, or off by one node
-    assert max(history["iterations"]) <= 3 and ten.cost["newton_iterations"] == sum(history["iterations"])
 
 
 def test_unloading_and_cycles():
@@ -150,48 +101,6 @@ def test_no_force(made):
 
 
 # --- units ---
-
-
-def unit(name, length, stress):
-    for ending, factor in (("_N", stress * length**2), ("_Pa", stress), ("_m2", length**2), ("_m", length)):
-        if name.endswith(ending):
-            return factor
-    return 1.0
-
-
-@pytest.mark.parametrize(
-    ("keys", "length", "stress", "within"),
-    [
-        ({}, 1e-6, 1.0, 1e-12),  # a contact of nanometres
-        ({"counter": SPHERE | ALUMINIUM}, 1.0, 1e-6, 1e-12),
-        ({"counter": PUNCH}, 3.7e3, 7.3e-9, 1e-12),
-        ({"plasticity": SWIFT, "force": hertz_force(4 * SWIFT_YIELD), "unload": True}, 3.7e3, 7.3e-9, 1e-9),
-    ],
-    ids=["sphere", "two bodies", "punch", "plastic"],
-)
-def test_unit_system_changes_nothing(keys, length, stress, within):
-    """Same iterations, every number equal to 1e-12 of the largest of its column. A yielding body is solved to
-    residuals of 1e-9, of which single points of a table may have a hundred times as much.
-    """
-    base, other = (
-        fem_reference.solve(scene(steps=3, units=units, **keys)) for units in ((1, 1), (length, stress))
-    )
-    assert other.cost["newton_iterations"] == base.cost["newton_iterations"]
-    for name, value in base.quantities.items():
-        scaled = other.quantities[name]
-        assert scaled == value or scaled / unit(name, length, stress) == close(value, within), name
-    for table, columns in base.tables.items():
-        for name in (n for n in columns if n not in ("state", "note", "residual")):
-            expected = np.asarray(columns[name], dtype=float)
-            scaled = np.asarray(other.tables[table][name], dtype=float) / unit(name, length, stress)
-            finite = np.isfinite(expected)
-            assert (np.isfinite(scaled) == finite).all()
-            largest = np.abs(expected[finite]).max(initial=0.0)
-            off = np.abs(scaled[finite] - expected[finite]).max(initial=0.0)
-            assert off <= 100 * within * largest if keys.get("plasticity") else off <= within * largest, (
-                table,
-                name,
-            )
 
 
 # --- statuses and refusals ---
@@ -252,10 +161,7 @@ def test_refusals_name_the_key():
     for made, words in (
         (scene(counter=ellipsoid), r'counterbody\.shape = "ellipsoid".*"sphere" or "punch"'),
         (scene(poisson=0.5), r"body\.poisson = 0\.5.*poisson < 0\.5"),
-        (
-            scene(counter=ellipsoid | soft, poisson=0.5),
-            r"counterbody\.shape.*; body\.poisson.*; counterbody\.po",
-        ),
+        (scene(counter=ellipsoid | soft, poisson=0.5), r"counterbody\.shape.*; body\.poisson.*;"),
     ):
         for asked in (fem_reference.check, fem_reference.solve):
             with pytest.raises(fem_reference.UnsupportedScene, match=words):
@@ -272,32 +178,6 @@ def test_left_out_names_stage_and_reason():
     assert mesh not in left and again <= left
     left = stages_left_out(scene(plasticity=SWIFT, unload=True, cycles=2))
     assert mesh in left and not (again | {plastic}) & left
-
-
-@pytest.mark.parametrize(("keys", "cycles"), [({"steps": 3}, 1), ({"steps": 2, "plasticity": SWIFT}, 2)])
-def test_progress_counts_load_steps(keys, cycles):
-    seen = []
-    made = scene(4, force=0.05, unload=True, cycles=cycles, **keys)
-    fem_reference.solve(made, progress=lambda *args: seen.append(args))
-    total = keys["steps"] * cycles
-    assert seen == [("contact", k, total) for k in range(1, total + 1)]
-
-
-def test_left_out_loads_no_solver():
-    """Asking what is left out imports neither scikit-fem nor scipy, and nothing of sam but sam.scene."""
-    code = (
-        "import sys, fem_reference; fem_reference.plan; fem_reference.UnsupportedScene\nprint(*sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    loaded = done.stdout.split()
-    assert not [m for m in loaded if m.split(".")[0] in ("skfem", "scipy", "verification")]
-    of_sam = {m for m in loaded if m.split(".")[0] == "sam" and not m.startswith("sam.scene.")}
-    assert of_sam <= {"sam", "sam.arrays", "sam.scene"}
-
-
-def test_unknown_name_is_an_attribute_error():
-    with pytest.raises(AttributeError, match="nothing"):
-        fem_reference.nothing  # noqa: B018
 
 
 # --- estimates, which set meshes ---

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Small-strain plasticity of the finite elements: return map, back-stresses, consistent tangent, materials of
-parts, assembly.
-"""
+"""Small-strain plasticity of the finite elements: return map, back-stresses, tangent, parts, assembly."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rough contact by finite elements in three dimensions: conditions on the returned field, maps of friction, a
-counter-body that moves, removal between the cycles, what is refused.
-"""
+"""Rough contact by finite elements: maps of friction, a moving counter-body, removal between cycles."""
 
 from dataclasses import replace
 from functools import cache
@@ -12,22 +10,13 @@ from builders import CHEMICAL_FILM, STEEL, SWIFT
 from made_results import column
 from rounding import EPS, close
 
-import fem_reference
 from fem_reference import UnsupportedScene, spatial
 from fem_reference.common.plasticity import History
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
 from fem_reference.spatial.rough import build, on_mesh
-from fem_reference.spatial.worn import (
-    Limits,
-    columns_of_points,
-    deepest_above,
-    depth_above,
-    moved_up,
-    own_depth,
-)
-from sam.scene import COUNTER_HEIGHT, CounterSurface, FrictionMap, HeightMap, Scene, load_scene
-from verification.compare.comparison import compare_scene
+from fem_reference.spatial.worn import Limits, columns_of_points, depth_above, moved_up, own_depth
+from sam.scene import COUNTER_HEIGHT, FrictionMap, HeightMap, Scene, load_scene
 from verification.scenes.asperities import CELLS, height_map
 
 SIDE = 12e-6
@@ -60,82 +49,6 @@ def rough(n=16, height=two_tops, *, side=SIDE, cells=None, **tables):
 
 def friction_map(values):
     return {"law": "map", "path": FrictionMap(values, (SIDE, SIDE))}
-
-
-def halves(n):
-    """A map: 0.1 for x < 0, 0.4 beyond."""
-    return friction_map(np.where(np.arange(n)[:, None] < n // 2, 0.1, 0.4) * np.ones((1, n)))
-
-
-@cache
-def solved():
-    """Two spots on 14 x 14 cells."""
-    scene = rough(14)
-    return scene, spatial.solve(scene)
-
-
-@cache
-def at_peak():
-    """Model and last state of the two spots with a map of friction, on coarse cells."""
-    model, steps = spatial.load_steps(rough(12, friction=halves(12)))
-    return model, steps[-1].state
-
-
-def test_the_cut_goes_through_the_largest_pressure():
-    """It is the mean of the elements on both sides of that row, as they are in the fields."""
-    _, result = solved()
-    surface, cut, plane = (result.tables[name] for name in ("surface", "cut", "plane"))
-    top, pitch = int(np.argmax(surface["p_Pa"])), SIDE / 14
-    assert cut["y_m"] == pytest.approx(np.full(len(cut["y_m"]), surface["y_m"][top]), abs=1e-12)
-    assert max(plane["mises_Pa"]) < max(cut["mises_Pa"]) <= result.quantities["mises_max_Pa"]
-    fields = result.fields
-    middles = fields.points[fields.cells["hexahedron"]].mean(axis=1)
-    beside = np.abs(middles[:, 1] - surface["y_m"][top]) < 0.6 * pitch
-    for x, z, szz in list(zip(cut["x_m"], cut["z_m"], cut["szz_Pa"], strict=True))[::37]:
-        at = beside & (np.hypot(middles[:, 0] - x, middles[:, 2] - z) < 1e-3 * pitch)
-        assert at.sum() == 2
-        assert fields.cell_data["stress_Pa"][at, 2].mean() == pytest.approx(szz, rel=1e-9, abs=1.0)
-    assert result.quantities["p_center_Pa"] is None  # a patch has no centre
-    assert not result.quantities["friction_coefficient"] and np.nanmax(surface["friction"]) == 0.0
-
-
-def test_spots_share_and_mean_gap_by_hand():
-    """The gap of the heights and of the displacements of the surface."""
-    model, state = at_peak()
-    found, x = model.quantities_of_patch(state), centres(12)
-    depth = two_tops(x[:, None], x).max() - two_tops(x[:, None], x)
-    uz = state.u[model.body.basis.nodal_dofs[2, model.surface]][np.isfinite(model.initial_gap)]
-    moved = (uz.mean() - state.approach) * model.scales.displacement
-    assert found["mean_gap_m"] == close(depth.mean() + moved, 1e-9)
-    assert found["contact_spots"] == 2
-    assert found["contact_share"] == close(model.contact_area(state) / SIDE**2, 1e-12)
-
-
-def test_conditions_on_the_returned_field():
-    """Balance, slip with the local coefficient, signs, reactions far away: from displacements and stiffness
-    alone (1e-9). The whole coefficient is that of the loads, also far away.
-    """
-    model, state = at_peak()
-    problem, total = model.problem, model.scales.peak_force
-    force = problem.solid.stiffness @ state.u
-    normal = np.where(state.active, force[problem.normal], 0.0)
-    assert state.converged and normal.sum() == pytest.approx(total, rel=1e-8) and normal.min() >= 0.0
-    local = 0.4 * problem.weights[state.active]
-    assert local == pytest.approx(np.where(model.places[0][state.active] < 0, 0.1, 0.4))
-    assert force[problem.along][state.active] == pytest.approx(local * normal[state.active], abs=1e-8 * total)
-    gap = problem.gap0 + state.u[problem.normal] - state.approach
-    assert np.abs(gap[state.active]).max() < 1e-13 and gap.min() > -1e-9
-    far, dragging = problem.solid.basis.nodal_dofs[:, problem.far], float(local @ normal[state.active])
-    assert force[far[2]].sum() == pytest.approx(-total, rel=1e-7)
-    assert force[far[0]].sum() == pytest.approx(-dragging, rel=1e-6)
-    assert model.friction(state) == pytest.approx(dragging / total, rel=1e-7)
-    held, load = (
-        np.flatnonzero(problem.fixed),
-        replace(state.load, ratio=state.load.ratio * dragging / total / 0.4),
-    )
-    # the share is that of the iteration before the last, which the last changes by its residual
-    exact = problem.far_field(load)[held]
-    assert state.u[held] == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())
 
 
 def test_a_map_on_a_smooth_body_is_the_constant():
@@ -213,19 +126,6 @@ def test_the_map_is_read_where_the_nodes_are():
     assert made.weights[patch] == pytest.approx(values / 0.4)
 
 
-def test_heights_on_the_counter_body_are_those_on_the_body():
-    """Bit by bit but for the column of the heights, as the gap knows only their sum."""
-    on_body = rough(12)
-    table = CounterSurface(kind="file", path=on_body.surface.path)
-    counterbody = on_body.counterbody.model_copy(update={"surface": table})
-    opposite = on_body.model_copy(update={"surface": None, "counterbody": counterbody})
-    one, two = spatial.solve(on_body), spatial.solve(opposite)
-    assert two.quantities == one.quantities
-    np.testing.assert_array_equal(two.tables["surface"]["p_Pa"], one.tables["surface"]["p_Pa"])
-    np.testing.assert_array_equal(two.tables["surface"][COUNTER_HEIGHT], one.tables["surface"]["height_m"])
-    assert not two.tables["surface"]["height_m"].any()
-
-
 # --- what is refused, plan, recipe, comparison ---
 
 FILM = CHEMICAL_FILM | {"strain_limit": 0.02}
@@ -247,31 +147,11 @@ def test_refused_by_name(tables, key):
         spatial.check(rough(**tables))
 
 
-def test_the_axisymmetric_model_refuses_them_too():
-    with pytest.raises(UnsupportedScene, match=r"surface\.kind.*wear\.strain_limit"):
-        fem_reference.check(rough(body={"plasticity": SWIFT}, **WEAR))
-
-
 def test_the_file_is_that_of_the_recipe():
     """Heights to 1e-12 m, places to 1e-9 m, as the file has them."""
     file, made = load_scene("verification/scenes/rough-asperities.toml").surface.measured, height_map(CELLS)
     assert file.cells == made.cells == (48, 48) and file.extent == pytest.approx(made.extent, rel=1e-4)
     assert np.abs(file.values - made.values).max() < 0.51e-12
-
-
-def test_compare_sees_a_wrong_load_and_a_missing_table():
-    """Equal results pass every row; a spot that bears 3 % more fails its own row, a result without surface
-    those that need it.
-    """
-    scene, fem = solved()
-    rows = compare_scene(scene, fem, fem)
-    assert all(row.passed for row in rows) and sum("load of the spot" in row.quantity for row in rows) == 2
-    x, p = (np.asarray(fem.tables["surface"][name]) for name in ("x_m", "p_Pa"))
-    heavier = {**fem.tables, "surface": {**fem.tables["surface"], "p_Pa": np.where(x < 0, 1.03 * p, p)}}
-    rows = compare_scene(scene, replace(fem, tables=heavier), fem)
-    assert [row.passed for row in rows if "load of the spot" in row.quantity] == [False, True]
-    rows = compare_scene(scene, replace(fem, tables={}), fem)
-    assert not {row.quantity: row.passed for row in rows}["p_Pa over the patch"]
 
 
 # --- a rough counter-body that moves ---
@@ -296,9 +176,7 @@ def sliding(counter=WAVE, *, path=PATH, plasticity=None) -> Scene:
 
 
 def test_the_contact_is_that_of_a_counter_body_at_rest_with_those_heights():
-    """The same discrete problem: each within EQUILIBRIUM of the force. Its heights are in the table, and a
-    crest in equilibrium is driven by friction alone.
-    """
+    """The same discrete problem within EQUILIBRIUM; friction alone drives a crest in equilibrium."""
     moved, end = spatial.solve(sliding()), sliding().counter_strip.at(0, PATH["end"])
     at_rest = {"kind": "file", "path": HeightMap(end, (10 * CELL, 10 * CELL))}
     still = spatial.solve(sliding(at_rest, path=None))
@@ -362,18 +240,6 @@ def test_a_profile_is_removed_down_to_its_first_crossing():
     assert depth_above(1.0, z, strain) == pytest.approx([3.0, 0.0, 2.0, 0.0, 2.0 / 3.0])
     with pytest.raises(ValueError, match="all of a column"):
         depth_above(1.0, z, np.array([[3.0, 2.0, 1.5]]))
-
-
-def test_a_roof_falls_down_to_the_last_crossing():
-    """The profiles above, the third with a second zone; all of a part, and none."""
-    z, strain = np.array([1.0, 2.0, 4.0, 5.0]), np.array([[3.0, 1, 3, 0], [0.8, 0.2, 0, 0], [0.0, 0, 0, 0]])
-    for between, expected in (
-        ((0, 5), [14 / 3, 2 / 3, 0]),
-        ((0, 1.5), [1.5, 2 / 3, 0]),
-        ((4, 5), [14 / 3, 0, 0]),
-    ):
-        assert deepest_above(1.0, z, strain, between) == pytest.approx(expected), between
-    assert deepest_above(-0.1, z, strain, (0.0, 5.0)).tolist() == [5.0] * 3
 
 
 def test_a_roof_falls_where_the_strain_is_beyond_its_limit_anywhere_below():

@@ -12,9 +12,7 @@ import sam
 from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
-from sam.elastic.stress import stresses_of
-from sam.kernels.patches import STRESS
-from sam.planner.bodies import Bodies, coarse, halved, hertz_semi_axes
+from sam.planner.bodies import Bodies, coarse, hertz_semi_axes
 from sam.results.quantities import extrapolated
 from sam.scene import Status
 from sam.schedule import Approach, Load
@@ -93,18 +91,6 @@ def test_status_of_a_solve(tables, status, words):
         assert {result.quantities[name] for name in names} == {0.0}
 
 
-def test_stress_in_a_row_beside_the_contact_is_that_of_the_column():
-    """Below a sphere x and y may change places; the row of the axis is the plane."""
-    problem, load = sam.plan(scene(grid={"cells": (9, 9)})).problem(Counters()), Load(0.65)
-    state = problem.state(load, problem.contact(load))
-    plane = stresses_of(state).plane[..., 0]
-    turned = plane[[STRESS.index(name) for name in ("22", "11", "33", "13", "23", "12")]]
-    for row in (6, 0):
-        found = stresses_of(state, row).in_row[..., 4]
-        assert np.abs(found - turned[..., row]).max() < 1e-9 * np.abs(plane).max()
-    assert np.array_equal(stresses_of(state, 4).in_row, plane)
-
-
 def test_beside_a_punch_there_is_no_gap():
     line = sam.solve(scene(counterbody=SHAPES["punch"], grid=FEW)).tables["line"]
     gap, x = np.asarray(line["gap_m"]), np.abs(line["x_m"])
@@ -162,18 +148,6 @@ def test_the_approaches_of_a_force_run_return_its_forces(monkeypatch, kind):
             assert by_approach.quantities[name] == pytest.approx(by_force.quantities[name], rel=1e-4, abs=0)
 
 
-def test_steps_in_a_dent_do_not_touch():
-    """In the second cycle the first step ends above the dent of the first, without force, at its approach."""
-    loading = {"force": None, "approach": 0.3e-6, "steps": 5, "unload": True, "cycles": 2}
-    result = sam.solve(
-        scene(grid=COARSE | {"cells": (17, 17)}, body={"plasticity": PERFECT}, loading=loading)
-    )
-    history, rows = result.tables["history"], rows_of(result)
-    assert result.converged and history["approach_m"][rows[2, 1] - 1] > 0.06e-6
-    assert history["force_N"][rows[2, 1] - 1] == history["force_N"][rows[2, 1]] == 0.0
-    assert history["approach_m"][rows[2, 1]] == pytest.approx(0.06e-6, rel=1e-12)
-
-
 def test_an_approach_that_leaves_the_bodies_apart_has_no_force():
     gap = np.full((32, 32), 2.0)
     contact = solve_contact(gap, (1.0, 1.0), 1.0, Approach(1.0))
@@ -196,27 +170,13 @@ def test_half_the_way_is_half_of_all_that_a_load_gives():
 
 
 def test_extrapolation_is_exact_for_a_quadratic_error():
-    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has, or is not of second order, stays
-    away.
-    """
+    """q = 3 + 5 h^2 on h = 1 and 1/1.94: 3; what only one of both has stays away."""
     ratio = 33 / 17
     before, fine = (
         {"p_max_Pa": 3 + 5 * h**2, "contact_area_m2": 1.0, "approach_m": None} for h in (1.0, 1 / ratio)
     )
     found = extrapolated(before, fine, ratio)
     assert set(found) == {"p_max_Pa"} and found["p_max_Pa"] == pytest.approx(3.0, rel=1e-14)
-
-
-def test_two_grids_are_solved_where_the_coarser_one_resolves_the_contact():
-    """Thirty-three cells over four radii leave the coarser grid seventeen, seventeen leave it nine."""
-    for cells, resolved in ((33, True), (17, False)):
-        alone, both = (
-            sam.solve(scene(grid={"cells": (cells, cells)}, solver={"extrapolate": each}))
-            for each in (False, True)
-        )
-        assert (both.quantities == alone.quantities) is not resolved
-        assert ("extrapolation" in [entry.stage for entry in both.left_out]) is not resolved
-    assert all(halved(n) % 2 == n % 2 and abs(halved(n) - n / 2) <= 1 for n in (17, 33, 65, 16, 30))
 
 
 def test_the_coarser_scene_keeps_extent_and_depth():

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Influence coefficients of a loaded rectangle and of an eigenstrain in a cuboid against quadrature of point
-loads and of Mindlin's point force.
-"""
+"""Influence coefficients against quadrature of point loads and of Mindlin's point force."""
 
 from math import pi
 
-import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -18,12 +15,7 @@ from sam.kernels.eigenstrain import displacement_parity, surface_displacement_co
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 from verification.reference.mindlin_cheng import EigenstrainSphere
-from verification.reference.nuclei import (
-    cuboid_by_faces,
-    cuboid_by_nuclei,
-    mindlin_displacement,
-    point_force,
-)
+from verification.reference.nuclei import cuboid_by_faces, cuboid_by_nuclei, mindlin_displacement, point_force
 from verification.reference.quadrature import patch_response
 
 HX, HY = 1.0, 0.7
@@ -99,9 +91,7 @@ def test_surface_stress_balances_the_traction():
 
 
 def of_cuboid(i, j, z, layer, nu):
-    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at a lag of either
-    sign.
-    """
+    """Stress (6) at z and displacement (3) of the surface for six eigenstrains, (9, 6), at any lag."""
     box = Cuboids(Lags(abs(i) + 1, abs(j) + 1, HX, HY), tuple(FACES), nu)
     stress = residual_stress_coefficients(box, z)[:, :, 0, layer, -1, -1]
     shift = [surface_displacement_coefficients(box, component=c)[:, layer, -1, -1] for c in (1, 2, 3)]
@@ -119,9 +109,7 @@ def by_quadrature(method, i, j, z, layer, nu):
 
 
 def test_mindlin_s_solution_is_in_equilibrium():
-    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric in force and
-    source.
-    """
+    """The independent answer itself: no traction at z = 0, the force carried at depth, symmetric."""
     x, y = np.array([0.3, 1.1])[:, None], np.array([-0.4, 0.9])
     assert np.abs(point_force((x, y, 0.0), 0.7, 0.3)[2:5]).max() <= 1e-14
     near = np.array(mindlin_displacement((0.4, -0.3, 0.5), 1.2, 0.3))
@@ -140,9 +128,7 @@ def test_mindlin_s_solution_is_in_equilibrium():
     [((1, 1, 0.5, 0), 0.3), ((0, -2, 0.2, 0), 0.0), ((-2, 1, 1.3, 1), 0.49), ((2, 0, 0.0, 0), 0.3)],
 )
 def test_equal_to_quadrature_of_point_nuclei_outside(place, nu):
-    """1e-10 of the largest component (the project's bound; measured below 1e-13), all quadrants, surface
-    included.
-    """
+    """1e-10 of the largest component (measured below 1e-13), all quadrants, surface included."""
     assert_close(of_cuboid(*place, nu), by_quadrature(cuboid_by_nuclei, *place, nu))
 
 
@@ -168,9 +154,7 @@ def test_surface_is_free_of_traction(hx, hy, faces):
 
 
 def test_far_away_an_expanding_cube_is_mindlin_and_cheng_s_sphere():
-    """Equal volumes; by its symmetry a cube differs by (half side/distance)^4 only: below 2e-6 at 12 to 20
-    sides.
-    """
+    """By its symmetry a cube differs by (half side/distance)^4: below 2e-6 at 12 to 20 sides."""
     n, top, nu = 12, 9.5, 0.3
     sphere = EigenstrainSphere(1.0, (3 / (4 * pi)) ** (1 / 3), top + 0.5, 2 * (1 + nu), nu)
     box, depth = Cuboids(Lags(n + 1, n + 1, 1.0, 1.0), (top, top + 1.0), nu), 1.5 * (top + 0.5)
@@ -226,55 +210,3 @@ def test_corner_functions_are_means_over_their_points(image):
     ]
     both, first, last = (each.planes(each(image, np.array([[0.4, 1.1]])), (0, 0)) for each in meshes)
     assert both == pytest.approx((first + last) / 2, rel=1e-13)
-
-
-class ManyDigits:
-    """numpy for arrays of mpmath numbers: its elementary functions replaced, everything else numpy's own."""
-
-    sqrt, log, arctan, arcsinh = (
-        staticmethod(np.frompyfunc(f, 1, 1)) for f in (mp.sqrt, mp.log, mp.atan, mp.asinh)
-    )
-    arctan2 = staticmethod(np.frompyfunc(mp.atan2, 2, 1))
-
-    def __getattr__(self, name):
-        return getattr(np, name)
-
-
-def corner_sum(x, y, z, faces, nu):
-    """Stress/mu (6, 6, layers) from the functions of the corners, in whatever numbers these are."""
-    at_faces = []
-    for face in faces:
-        functions = (
-            eigenstrain.image_functions(x, y, z + face), eigenstrain.full_space_functions(x, y, z - face)
-        )  # fmt: skip
-        image, full = (
-            np.array([np.diff(np.diff(np.broadcast_to(f, (2, 2)), axis=0), axis=1)[0, 0] for f in values])
-            for values in functions
-        )
-        stress = np.empty(36, dtype=object)
-        for block in eigenstrain.blocks(nu):
-            of_image = np.tensordot(np.array([1, face, z, z * face]), block.image, 1)
-            stress[block.rows] = of_image @ image[block.of_image] + block.full @ full[block.of_full]
-        at_faces.append(stress)
-    return np.moveaxis(np.diff(np.array(at_faces), axis=0), 0, -1).reshape(6, 6, -1)
-
-
-def test_double_precision_keeps_its_digits_near_and_far(monkeypatch):
-    """The same formulas with 40 digits. Cancellation in the corner sums stays below 1e-13 of a cell's own
-    stress at any distance (the project's bound is 1e-10), and below 1e-7 of the coefficient itself 60 cells
-    away.
-    """
-    exact = np.frompyfunc(mp.mpf, 1, 1)
-    for i, j, z in ((0, 0, 0.55), (0, 1, 1e-3), (60, 45, 20.0)):
-        x, y = (np.array([i - 0.5, i + 0.5]) * HX)[:, None], (np.array([j - 0.5, j + 0.5]) * HY)[None, :]
-        corners = [each[None] for each in np.broadcast_arrays(x, y)]
-        functions, double = layer_stress.CornerFunctions((1, 1), corners), np.empty((36, 3, 1, 1))
-        layer_stress.LayerStress(functions, np.array([[z]]), FACES, 0.3).of(0, double)
-        inside = (FACES[:-1] <= z) & (z < FACES[1:])  # the cuboid there has its own stress added back
-        double = double.reshape(6, 6, -1) + np.where(inside, eigenstrain.own_stress(0.3)[..., None], 0.0)
-        with monkeypatch.context() as patch, mp.workdps(40):
-            patch.setattr(eigenstrain, "np", ManyDigits())
-            patch.setattr(primitives, "np", ManyDigits())
-            answer = corner_sum(exact(x), exact(y), mp.mpf(z), exact(FACES), 0.3)
-        error = np.abs((double - answer).astype(float)).max()
-        assert error < 1e-13 and error < 1e-7 * np.abs(answer.astype(float)).max()

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A film bonded on a half-space: the response to a wave against a solve with 60 digits, the coefficients of
-cells against quadrature over wave vectors, and coated scenes.
-"""
+"""A bonded film: response against 60 digits, coefficients against quadrature, coated scenes."""
 
 from collections import defaultdict
 from dataclasses import replace
@@ -10,9 +8,8 @@ from itertools import product
 import numpy as np
 import pytest
 from builders import RADIUS, scene as small_scene
-from made_results import column
 from many_digits import ManyDigits
-from rounding import close, of_sum
+from rounding import close
 
 import sam
 from sam import choose_grid
@@ -21,21 +18,11 @@ from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
 from sam.grid.smooth import contact_radius, depths_with_film
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
-from sam.layered.patches import (
-    Angular,
-    CellIntegrals,
-    LayeredPatches,
-    RadialTable,
-    spline_matrix,
-    wave_numbers,
-)
-from sam.layered.response import Layers, Response, normal_compliance
-from sam.planner.bodies import Bodies
+from sam.layered.patches import LayeredPatches, RadialTable, spline_matrix, wave_numbers
+from sam.layered.response import Layers, Response
 from sam.results.quantities import coated_quantities
 from sam.results.snapshots import Coated, Comparison
 from sam.scene import Scene, Status
-from sam.schedule import Load
-from verification.reference.layered_axisymmetric import CoatedHalfSpace
 
 THICKNESS = 1e-7
 COATED = Layers(80e9, 0.3, THICKNESS, 210e9, 0.25)
@@ -44,7 +31,7 @@ SOFT = Layers(2e9, 0.5, THICKNESS, 210e9, 0.3)
 
 RATIOS = (1e-6, 1e-3, 0.1, 80 / 210, 1.0, 3.0, 1e3, 1e6)
 POISSONS = ((0.0, 0.0), (0.3, 0.3), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0), (0.3, 0.5), (0.5, 0.3), (0.25, 0.45))
-WAVES = 10.0 ** np.arange(-8, 4.1)  # kh, wave number times thickness
+WAVES = 10.0 ** np.arange(-8, 4.1, 2)  # kh, wave number times thickness
 
 # the response to a wave
 
@@ -101,24 +88,6 @@ def test_response_against_many_digits_over_the_whole_range():
     assert worst["c_zz"] <= 1e-11
 
 
-def test_waves_pressed_flat():
-    """The pressure over that without film, film and body of Bosman & Schipper (2011), by another system."""
-    film, body, waves = (80e9, 0.3), (210e9, 0.3), np.array([1, 2, 5, 10, 20, 50]) * 1e-6
-    k = 2 * np.pi / waves
-    coated, bare = (normal_compliance(Layers(*of, 1e-7, *body), k) for of in (film, body))
-    layers = CoatedHalfSpace(*film, 1e-7, *body)
-    exact, half_space = layers.compliance(k), 2 / (layers.modulus_body * k)
-    for counter in (0.0, 2 * 0.91 / (210e9 * k)):
-        found = (bare + counter) / (coated + counter)
-        assert found == pytest.approx((half_space + counter) / (exact + counter), rel=1e-10)
-
-
-def test_the_many_digits_do_not_depend_on_their_number():
-    """The reference itself: 60 against 100 digits at the hardest corner."""
-    few, many = (ManyDigits(1e-8, 1e6, 0.5, 0.0, digits=digits).surface() for digits in (60, 100))
-    assert [float(a / b - 1) for a, b in zip(few, many, strict=True)] == pytest.approx([0] * 4, abs=1e-25)
-
-
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_equal_materials_are_a_bare_half_space(nu):
     """(1 - nu), -(1 - 2 nu)/2, 1 - nu, 1 for mu k c; nothing is reflected. 1e-10 is the project's bound."""
@@ -142,23 +111,6 @@ def test_excess_is_the_difference_from_a_half_space_of_film():
         parts = zip(coated.coating_excess(z), coated.stress(z), film.stress(z), strict=True)
         for mine, whole, half_space in parts:
             assert np.abs(whole - half_space - mine).max() < 1e-13
-
-
-def test_no_overflow_far_beyond_the_range():
-    kh = np.geomspace(1e-80, 1e80, 33)
-    for ratio in (1e-6, 1e6):
-        response = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.0), kh)
-        with np.errstate(over="raise", invalid="raise", divide="raise"):
-            fields = [response.surface, response.surface_excess, *response.stress(0.5), *response.stress(3.0)]
-        assert all(np.all(np.isfinite(field)) for field in fields)
-
-
-def test_short_waves_feel_the_film_alone():
-    for ratio, (nu, nu_body) in product(RATIOS, POISSONS):
-        wave = Response(Layers(ratio, nu, 1.0, 1.0, nu_body), np.array(1e4))
-        assert wave.surface[0] == pytest.approx(1 - nu, rel=1e-14)
-        fields = [wave.surface, *(part for z in (0.0, 0.5, 1.0, 2.0) for part in wave.stress(z))]
-        assert all(np.all(np.isfinite(field)) for field in fields)
 
 
 @pytest.mark.parametrize(
@@ -239,9 +191,7 @@ def at(coefficients, lags):
 
 @MATERIALS
 def test_stress_equals_quadrature(layers, load):
-    """In the film above and below the depth from which no closed form is taken out, at the interface, in the
-    body.
-    """
+    """In the film on both sides of where a closed form is taken out, at the interface, in the body."""
     for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
         answer = by_quadrature(layers, cell, LAGS, height, load)
         lags = Lags(4, 5, cell[0] * THICKNESS, cell[1] * THICKNESS)
@@ -250,9 +200,7 @@ def test_stress_equals_quadrature(layers, load):
 
 
 def displacement_by_quadrature(layers, cell, lags, load):
-    """Surface displacement times mu_1/h, (lags, 3): difference from a half-space of film, and its closed
-    form.
-    """
+    """Surface displacement times mu_1/h, (lags, 3): excess over a half-space of film, and that."""
     k, phi, weights = waves(cell, lags, 2.0)
     bare = Layers(layers.young, layers.poisson, layers.thickness, layers.young, layers.poisson)
     zz, zl, ll, tt = (Response(layers, k).surface - Response(bare, k).surface) / k
@@ -295,25 +243,6 @@ def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
         assert np.abs(ours - bare).max() < 1e-10 * largest
 
 
-@pytest.mark.parametrize("load, nu", [(1, 0.3), (2, 0.0), (3, 0.5)])
-def test_coefficients_of_equal_materials_are_the_closed_form(load, nu):
-    """The displacement to rounding, nothing being added; the stress to that of the tables, 1e-9 of the
-    largest.
-
-    The displacement is a sum of eight terms x ln(y + r) at the corners, x up to 70 cells, r up to 72.
-    """
-    same, hx = LayeredPatches(Layers(5e9, nu, THICKNESS, 5e9, nu)), THICKNESS
-    lags = Lags(70, 20, hx, 0.6 * hx)
-    depths = np.array([0.0, 0.5, 0.95, 1.0, 2.0, 20.0]) * THICKNESS
-    bare = stress_coefficients(lags, depths, nu, load=load)
-    error = same.stress(lags, depths, load=load) - bare
-    assert np.all(np.abs(error).max(axis=(0, 2, 3)) < 1e-9 * np.abs(bare).max(axis=(0, 2, 3)))
-    for i in (1, 2, 3):
-        bare = displacement_coefficients(lags, nu, component=i, load=load)
-        ours = same.displacement(lags, component=i, load=load) * same.layers.shear
-        assert np.abs(ours - bare).max() < of_sum(np.full(8, 70 * np.log(2 * 72))) * hx
-
-
 @pytest.mark.parametrize(
     "over, factors", [(1.0, (0.6464, 0.2914, 0.0809, 0.0189)), (2.0, (0.9106, 0.6437, 0.2449, 0.0666))]
 )
@@ -336,29 +265,12 @@ def radial_values(table, r, kind="point"):
 
 @pytest.mark.parametrize("order, bias", [(0, 1.0), (1, 1.0), (1, 0.5), (2, 1.0), (3, 1.0)])
 def test_radial_table_of_an_exponential(order, bias):
-    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)  (int e^{-pk}
-    J_m(kr) dk, -d/dp).
-    """
+    """f = e^{-k}: g = (1 + m c) t^m/(1 + r^2)^1.5/(2 pi), c = sqrt(1 + r^2), t = r/(1 + c)."""
     r = np.geomspace(1e-3, 1e3, 61)
     root = np.sqrt(1 + r * r)
     exact = (1 + order * root) * (r / (1 + root)) ** order / root**3 / (2 * np.pi)
     ours = radial_values(RadialTable(np.exp(-wave_numbers())[None], order, bias), r)
     assert np.abs(ours - exact).max() < 1e-11 * exact.max()  # rounding over r^bias at 1e-3, spline 1e-12
-
-
-@pytest.mark.parametrize("angular", [Angular(0), Angular(1), Angular(2, sine=True), Angular(3)])
-def test_cells_of_a_known_function(angular):
-    """Near, 5, 4, 3 and 2 point cells against 12 x 12 Gauss points of g: all but the cells at the origin."""
-    table = RadialTable(np.exp(-wave_numbers())[None], angular.order, 1.0)
-    ours = CellIntegrals(Lags(70, 12, 1.5, 1.0)).integrate(table, angular)[0]
-    t, w = np.polynomial.legendre.leggauss(12)
-    m = angular.order
-    for i, j in ((3, 2), (5, 11), (14, 3), (30, 4), (50, 1), (69, 9)):
-        x, y = (i + t[:, None] / 2) * 1.5, j + t[None, :] / 2
-        r, root = np.hypot(x, y), np.sqrt(1 + x * x + y * y)
-        g = (1 + m * root) * (r / (1 + root)) ** m / root**3 / (2 * np.pi) * angular(np.arctan2(y, x))
-        exact = np.sum(g * w[:, None] * w) * 1.5 / 4
-        assert ours[i, j] == pytest.approx(exact, abs=2e-11)  # of a largest value of 0.1
 
 
 def test_a_bad_depth_is_refused():
@@ -419,41 +331,6 @@ def test_a_film_of_the_material_of_the_body_changes_nothing(more):
     assert abs(found.quantities["p_max_change"]) < 1e-9 and abs(found.quantities["mises_max_change"]) < 1e-9
 
 
-def dense(kernel, pressure):
-    """sum over cells of kernel[|i - k|, |j - m|] pressure[k, m] on one grid; kernel even in both lags."""
-    i, j = (np.abs(np.arange(n)[:, None] - np.arange(n)) for n in pressure.shape)
-    return np.einsum("ikjm,km->ij", kernel[i[:, :, None, None], j[None, None]], pressure)
-
-
-def test_the_gap_closes_and_the_displacement_is_the_bodys_own():
-    """By direct sums with the coefficients of film and counter-body: the surfaces touch, and uz_m is that of
-    the body alone. The quantities are those of the fields and of a bare solve.
-    """
-    a_scene = coated(counterbody=ALUMINIUM, cells=25)
-    plan = sam.plan(a_scene)
-    grid, film = plan.grid, plan.coated
-    contact = plan.problem(Counters()).contact(Load(FORCE))
-    body = dense(film.layered.displacement(Lags(25, 25, grid.hx, grid.hy)), contact.pressure)
-    mu, unit = 70e9 / (2 * 1.33), Lags(25, 25, 1.0, grid.hy / grid.hx)
-    other = dense(grid.hx * displacement_coefficients(unit, 0.33) / mu, contact.pressure)
-    r2 = grid.x[:, None] ** 2 + grid.y[None, :] ** 2
-    gap = r2 / (2 * RADIUS) + body + other - contact.approach
-    assert contact.converged and np.abs(gap[contact.pressure > 0]).max() < 1e-8 * contact.approach
-    assert gap[contact.pressure == 0].min() > -1e-8 * contact.approach
-    result = sam.solve(a_scene)
-    assert np.abs(column(result, "line", "uz_m") - body[:, 12]).max() < 1e-9 * body.max()
-    q, z, mises = result.quantities, column(result, "plane", "z_m"), column(result, "plane", "mises_Pa")
-    for name, above, below in (
-        ("p_max", "p_max_Pa", "p_max_bare_Pa"),
-        ("mises_max", "mises_max_substrate_Pa", "mises_max_bare_Pa"),
-    ):
-        assert q[f"{name}_change"] == pytest.approx(q[above] / q[below] - 1, rel=1e-7)
-    # refined by a parabola: at most a fraction of the distance of two depths above the largest sample
-    for name, inside in (("substrate", z >= 0.1 * A0), ("film", z < 0.1 * A0)):
-        assert mises[inside].max() <= q[f"mises_max_{name}_Pa"] <= 1.002 * mises[inside].max()
-    assert q["mises_max_Pa"] == max(q["mises_max_film_Pa"], q["mises_max_substrate_Pa"])
-
-
 @pytest.mark.parametrize("deep, film, body", [(False, 4.0, None), (True, None, 4.0)])
 def test_depths_on_one_side_of_the_interface_say_nothing_of_the_other(deep, film, body):
     depths, mises = np.arange(3.0) + 5 * deep, np.array([[1.0], [4.0], [1.0]])
@@ -467,9 +344,7 @@ def test_depths_on_one_side_of_the_interface_say_nothing_of_the_other(deep, film
 
 
 def test_traction_moves_the_coated_body_and_the_counter_body_apart():
-    """Both parts by direct sums over all cells, with signs; a coefficient of friction of its own in each
-    cell.
-    """
+    """Both parts by direct sums over cells, each with a coefficient of friction of its own."""
     rng, n, h = np.random.default_rng(1), 7, 0.3e-6
     layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
     other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9
@@ -488,24 +363,11 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     assert np.abs(part - expected[2:5, 3:5]).max() <= 1e-12 * np.abs(expected).max()
 
 
-def test_unloaded_and_without_force_nothing_is_left():
-    result = sam.solve(coated(cells=17, unload=True, steps=2))
-    assert result.quantities["residual_uz_center_m"] == 0.0
-    assert not column(result, "line", "uz_m", "unloaded").any()
-    empty = sam.solve(coated(cells=17, force=0.0))
-    assert empty.status is Status.CONVERGED and empty.quantities["p_max_bare_Pa"] is None
-    left = [(entry.stage, entry.reason) for entry in empty.left_out]
-    assert ("bare comparison", "loading.force = 0: no contact") in left
-
-
 @pytest.mark.parametrize(
     ("body", "key"),
     [
         ({"coating": {"yield_stress": 0.67e9}}, r"body\.coating\.yield_stress = 6\.7e\+08"),
-        (
-            {"plasticity": {"law": "perfect", "yield_stress": 1e9}},
-            "body.coating together with body.plasticity",
-        ),
+        ({"plasticity": {"law": "perfect", "yield_stress": 1e9}}, "body.coating together with body"),
     ],
 )
 def test_yielding_is_refused_by_name(body, key):
@@ -516,16 +378,6 @@ def test_yielding_is_refused_by_name(body, key):
             sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"
         ):
             function(a_scene)
-
-
-def test_left_out_names_the_film_only_where_it_is_missing():
-    def stages(a_scene):
-        return {entry.stage: entry.reason for entry in sam.left_out(a_scene)}
-
-    assert stages(coated(bare=True))["layered coefficients"] == "no [body.coating]"
-    assert "layered coefficients" not in stages(coated())
-    assert "z = " in stages(coated(thickness=1e3))["stresses in the substrate"]
-    assert "stresses in the film" in stages(coated(grid={"depths": (A0, 2 * A0)}))
 
 
 def test_depths_hold_the_film_the_interface_and_what_is_below():
@@ -541,13 +393,6 @@ def test_depths_hold_the_film_the_interface_and_what_is_below():
     assert choose_grid(given).depths.tolist() == [0.0, 1e-6, 3e-6]
     modulus = 210e9 / 0.91
     assert contact_radius(lambda k: 2 / (modulus * k), FORCE, RADIUS, (A0, A0)) == close(A0, 1e-9)
-
-
-def test_a_chosen_grid_is_four_estimated_radii_wide():
-    """The estimate is within 3 % of the radius, 1.296 A0 by a spectral method."""
-    soft = coated(80 / 210, 1.0)
-    grid, radius = choose_grid(soft), Bodies(soft).scale * A0
-    assert grid.nx * grid.hx == close(4 * radius, 1e-9) and radius == close(1.296 * A0, 0.03)
 
 
 def test_a_bare_contact_that_does_not_fit_is_said_and_not_compared():

@@ -1,28 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""A misfit sphere in SAM: its stress and profiles, the plastic zone, means over cells, and the grid that is
-chosen.
-"""
+"""A misfit sphere in SAM: stress and profiles, the plastic zone, means over cells, and the chosen grid."""
 
 from __future__ import annotations
-
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from builders import PERFECT, scene
-from plastic_start import begin
 from scipy.integrate import quad
 
 import sam
 from sam.elastic.misfit import PROFILES, MisfitSphere
-from sam.elastic.stress import ElasticPeak
-from sam.grid.cells import CellGrid, Room, Window
+from sam.grid.cells import CellGrid, Room
 from sam.grid.smooth import MisfitDemand
 from sam.half_space import ElasticConstants
-from sam.plasticity.box import first_extent
-from sam.plasticity.state import Extent
-from sam.scene import Grid, Scene, Solver, resolved
-from sam.schedule import Load
+from sam.scene import Grid, Scene, resolved
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.misfit_sphere import GrowingSphere
 
@@ -126,14 +117,6 @@ def test_output_depths_of_an_elastic_body_reach_two_radii_below_the_centre():
     assert np.allclose(np.diff(depths), 0.02 * A) and 0 <= depths[0] < 0.02 * A
 
 
-@pytest.mark.parametrize("top, first", [(0.5003, 0.5003), (0.4997, 1.4997)])
-def test_a_first_layer_thinner_than_half_a_cell_is_none(top, first):
-    """Cells of A/8, the centre in the middle of one of them, faces up to `top` cells below the surface."""
-    cell = A / 8
-    faces = grid_of(1.2 * A, depth=(10.5 + top) * cell).faces
-    assert faces[:2] == pytest.approx([0.0, first * cell], abs=1e-9 * cell)
-
-
 @pytest.mark.parametrize("reach, count", [(17.4999, 17), (17.5002, 18)])
 def test_layers_reach_as_far_as_the_cells(reach, count):
     faces = grid_of(reach / 12 * A, depth=10 * A).faces
@@ -151,45 +134,6 @@ def test_the_chosen_grid_holds_the_plastic_zone_with_a_cell_at_the_centre(depth)
     assert grid.nx * grid.hx / 2 > 1.4 * zone and grid.faces[0] == 0.0
     assert np.abs(grid.depths - depth * A).min() < 1e-6 * A
     assert np.all(np.diff(grid.faces) > 0.45 * grid.hx) and len(grid.depths) < 45
-
-
-def test_an_elastic_body_needs_no_cells():
-    found = sam.solve(growing())
-    left = {each.stage for each in found.left_out}
-    assert {"contact search", "surface coefficients", "plastic loop"} <= left
-    exact = 0.28 * YOUNG * 0.02 / (1 - NU)
-    assert found.quantities["mises_max_Pa"] == pytest.approx(exact, rel=0.05)  # the image adds to it
-
-
-def test_a_sphere_that_grows_and_shrinks_strains_the_body_again_and_again():
-    """The closed form of two cycles, of second order in five cells of the radius (measured 3.4 %). Nothing
-    touches, and x and y may change places.
-    """
-    cycles = {"depth": 1.5 * A, "misfit": 0.04, "surface": "held", "steps": 1, "unload": True, "cycles": 2}
-    given = growing(PERFECT, **cycles, unload_steps=2).model_copy(
-        update={"grid": Grid(cells=(23, 23), extent=(4.6 * A, 4.6 * A)), "solver": Solver(tolerance=1e-4)}
-    )
-    model, now = begin(given)
-    problem = model.problem(now.extent)
-    assert problem.operator.exchange and not problem.pressure.pressure(Load(1.0)).any()
-    found, at = sam.solve(given), A * np.linspace(0.3, 1.4, 1101)
-    exact = [
-        GrowingSphere(YOUNG, NU, lambda peeq: 1e9 + 0 * peeq, 0.04, A, shares=shares).fields(at).peeq.max()
-        for shares in ((1.0,), (1.0, 0.0, 1.0))
-    ]
-    assert found.converged and found.tables["cycles"]["peeq_max"] == pytest.approx(exact, rel=0.1)
-    assert found.tables["history"]["note"][0] == "misfit strain 0.04"
-    assert set(found.tables["history"]["force_N"]) == {0.0}
-
-
-@pytest.mark.parametrize("first, box", [(7, Window(4, 3, 12, 18)), (1, Window(0, 0, 20, 24))])
-def test_the_first_box_about_a_zone_has_three_free_cells_and_one_layer_more(first, box):
-    """Columns 7 to 12 of oblong cells are as wide as rows 6 to 17; columns 1 to 12 take the whole grid."""
-    mises = np.zeros((6, 20))
-    mises[1:4, first:13] = 2.0
-    peak = ElasticPeak(SimpleNamespace(pressure=np.zeros((20, 24))), mises)
-    grid = CellGrid(20, 24, 1.0, 0.5, np.arange(6.0))
-    assert first_extent(grid, peak, np.ones(6), anywhere=False) == Extent(box, 5)
 
 
 def test_a_zone_that_reaches_a_held_surface_is_refused():

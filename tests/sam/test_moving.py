@@ -1,25 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""A counter-body that moves: its path, the groove of a yielding body, a rough counter-body over rough bodies,
-film and wear on its way.
-"""
+"""A counter-body that moves: its path, groove and rough surface, and film and wear on its way."""
 
 import itertools
 from dataclasses import replace
-from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from builders import (
-    CHEMICAL_FILM,
-    PATH,
-    SWIFT_YIELD,
-    hertz_force,
-    parsed,
-    running_in,
-    scene,
-)
-from hypothesis import given, strategies as st
+from builders import CHEMICAL_FILM, PATH, SWIFT_YIELD, hertz_force, parsed, running_in, scene
 
 import sam
 from sam.grid.cells import CellGrid, Window
@@ -27,7 +15,7 @@ from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
 from sam.results.quantities import refined_peak
 from sam.results.snapshots import Box
-from sam.scene import HeightMap, Path, Scene, SceneError, Status, Strokes, resolved
+from sam.scene import HeightMap, Scene, SceneError, Status
 from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED
 from sam.scene.surface import CounterSurface, Strip, heights, with_relief
@@ -36,16 +24,6 @@ from sam.tribofilm.law import FilmLaw, FilmState
 from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
 
 # the path and its passes
-
-
-def test_a_scene_with_a_path_is_read_and_written():
-    text = PATH.replace("steps = 4", 'steps = 4, return = "to-and-fro"')
-    found = parsed(('"105 um"', '"105 um"\nslip = 0.5'), add=text)
-    path = found.loading.path
-    assert (path.start, path.end, path.steps, path.to_and_fro) == ((-9e-6, 0.0), (9e-6, 0.0), 4, True)
-    assert found.counterbody.slip == 0.5
-    assert resolved(found)["loading"]["path"]["return"] == "to-and-fro"
-    assert Scene(**resolved(found)) == found
 
 
 def test_steps_are_counted_in_radii_of_hertz():
@@ -57,22 +35,6 @@ def test_steps_are_counted_in_radii_of_hertz():
     assert parsed(('force = "0.65 N"', 'approach = "0.349 um"'), add=path).strokes.count == 12  # a^2/R
     for punch in ('punch"\nradius = "6 um"', 'rounded-punch"\nradius = "50 um"\nflat_radius = "6 um"'):
         assert parsed(('sphere"\nradius = "105 um"', punch), add=path).strokes.count == 12
-
-
-@given(steps=st.integers(1, 40), cycles=st.integers(1, 6), back=st.booleans(), unload=st.booleans())
-def test_a_pass_begins_where_the_load_is(steps, cycles, back, unload):
-    """To and fro each pass begins where the last one ended; "lifted", at the start, where it is put on."""
-    how = {"return": "to-and-fro" if back else "lifted"}
-    path = Path(start=(-1.0, 0.5), end=(2.0, 0.5), steps=steps, **how)
-    strokes = Strokes(path, path.count(1.0), cycles, unload, with_motion=True)
-    passes = [strokes.of_cycle(cycle) for cycle in range(1, cycles + 1)]
-    for before, after in pairwise(passes):
-        assert after.pressed is before.unloads is not back
-        assert after.places[0] == (before.places[-1] if back else path.start)
-        assert after.sign == (-before.sign if back else before.sign)
-    assert passes[0].pressed and passes[-1].unloads is unload
-    assert {len(each.places) for each in passes} == {steps + 1}
-    assert all({each.places[0], each.places[-1]} == {path.start, path.end} for each in passes)
 
 
 def test_the_steps_of_a_scene_to_and_fro():
@@ -157,15 +119,6 @@ class TestTrack:
         assert np.isnan([found.depth, found.middle, found.transient]).all()
         assert found.deepest == pytest.approx(1.0)
 
-    @pytest.mark.parametrize(
-        "uz, transient", [((0, 1, 1, 1), 0.98), ((0, 1, 1, 0.9), np.nan), ((0, -1, -1, -1), np.nan)]
-    )
-    def test_a_groove_that_is_not_deep_and_even_at_its_end_has_no_transient(self, uz, transient):
-        way, uz = np.arange(4.0), np.array(uz)
-        found = Groove.of(way, uz, way > 0, 3.0, across=uz, peak=(1.0, 1.0))
-        assert found.depth == pytest.approx(uz[1:].mean()) and found.middle == uz[2]
-        np.testing.assert_allclose(found.transient, transient)
-
     def test_tables_of_a_made_track(self):
         """Cells of 1 in a box of 4 x 3 x 2 cells: stresses are means over both rows that touch the path."""
         made = np.random.Generator(np.random.PCG64(5)).normal
@@ -212,18 +165,6 @@ def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> S
     )
 
 
-def test_all_of_friction_is_along_the_motion():
-    """q moves a rigid sphere on: F_x = mu F, and the offset that the coupling makes."""
-    path = {"steps": 3, "return": "to-and-fro"}
-    history = sam.solve(moving(path, plasticity=None, loading={"cycles": 2}, friction=0.2)).tables["history"]
-    force, coefficient = np.array(history["fx_N"])[:-1], np.array(history["friction_coefficient"])[:-1]
-    offset, forth = np.array(history["pressure_offset_m"])[:-1], np.array(history["cycle"])[:-1] == 1
-    signed = np.where(forth, coefficient, -coefficient)
-    np.testing.assert_allclose(force / FORCE, signed + offset / RADIUS, rtol=1e-9)
-    np.testing.assert_array_equal(coefficient, 0.2)
-    assert offset[3] == pytest.approx(-offset[-1], rel=1e-4) != 0
-
-
 LONG = {"path": {"steps": 8}, "track": 6.0}
 
 
@@ -247,15 +188,6 @@ class TestGroove:
         unloaded = np.array(line["state"]) == "unloaded"
         np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
 
-    def test_has_a_cross_section_of_the_body(self, found):
-        cross, quantities = found.tables["cross"], found.quantities
-        track, rows = found.tables["track"], len(np.unique(cross["z_m"]))
-        middle = np.abs(track["x_m"] - 0.75 * A).argmin()  # of 3 a to 4.5 a after the start
-        assert cross["peeq"].max() == track["peeq_max"][middle]
-        assert -cross["uz_m"].min() == pytest.approx(quantities["shoulder_side_m"])
-        k = int(np.argmin(np.abs(cross["y_m"])))  # the uppermost cell at y = 0; z runs first
-        assert k % rows == 0 and cross["sxx_Pa"][k] == pytest.approx(track["top_sxx_Pa"][middle])
-
     def test_long_steps_are_warned_of(self, found):
         assert any("steps of 0.75 contact radii" in words for words in found.warnings)
         stages = {each.stage: each for each in sam.plan(moving(**LONG)).stages}
@@ -273,9 +205,7 @@ def test_says_where_the_plastic_zone_left_the_grid():
 
 @pytest.mark.parametrize("law", [None, {"law": "perfect", "yield_stress": 2.3 * SWIFT_YIELD}])
 def test_says_where_the_contact_left_the_grid(law):
-    """The grid ends 1.1 radii behind the path: a body that yields ends there, an elastic one says from where
-    on its tables are wrong.
-    """
+    """Ending 1.1 radii behind the path: a body that yields ends, an elastic one says from where."""
     narrow = {"cells": (33, 15), "extent": (33 * A / 4, 15 * A / 4)}
     path = {"steps": 8, "start": (-2 * A, 0.0)}
     found = sam.solve(moving(path, track=6.0, plasticity=law, grid=narrow, loading={"steps": 2}))
@@ -283,14 +213,6 @@ def test_says_where_the_contact_left_the_grid(law):
     assert "raise grid.extent" in found.message and "after" in found.message
     assert len(found.tables["history"]["step"]) > 5
     assert set(found.tables["line"]["state"]) == ({"last"} if law else {"peak", "unloaded"})
-
-
-def test_back_stresses_move_too_and_their_passes_are_judged():
-    law = {"law": "perfect", "yield_stress": SWIFT_YIELD, "kinematic": {"modulus": (10.5e9,)}}
-    found = sam.solve(moving({"steps": 1}, track=1.0, plasticity=law, loading={"cycles": 4}))
-    assert found.converged and found.verdict is not None
-    assert len(found.tables["passes"]["new_strain_max"]) == 4
-    assert found.tables["cycles"]["new_strain_max"][1] > 0
 
 
 # rough bodies
@@ -377,22 +299,6 @@ def sliding(surface, *, body=None, **loading) -> Scene:
     )
 
 
-def test_a_wave_carries_its_pressure_with_it():
-    """A crest across a smooth body, in steps of whole cells: the same pressure, further on."""
-    wave = of_wave(48) | {"wavelength_y": 2 * SIDE}
-    ends = (
-        {"start": (-2 * CELL, 0.0), "end": (2 * CELL, 0.0)},
-        {"start": (-4 * CELL, 0.0), "end": (0.0, 0.0)},
-    )
-    whole, half = (sam.solve(sliding(wave, path=each | {"steps": 2})) for each in ends)
-    history = whole.tables["history"]
-    assert whole.converged and len(history["s_m"]) == 3
-    for name in ("surface", "line"):  # only the middle of the way counts
-        np.testing.assert_array_equal(whole.tables[name]["p_Pa"], half.tables[name]["p_Pa"])
-    np.testing.assert_allclose(history["p_max_Pa"], history["p_max_Pa"][0], rtol=1e-6)
-    np.testing.assert_allclose(history["pressure_offset_m"], [-2 * CELL, 0, 2 * CELL], atol=1e-3 * CELL)
-
-
 def test_a_body_that_yields_only_further_along_the_path():
     """The first place stays elastic by itself, and a later one does not."""
     loading = {"force": 0.01, "path": {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 6}}
@@ -420,9 +326,7 @@ HALF = 1.0  # of the contact
 
 
 def swept(track: Track, cycles: int, steps: int = 40):
-    """The film after each step of a contact of half-width HALF over cells in a row, unloaded after each pass
-    unless that goes back: (cycle, place, film).
-    """
+    """(cycle, film) after each step of a contact of half-width HALF over cells in a row."""
     film_of = FilmOnCells(LAW, (len(ALONG), 1), VisitLaw(RATE, track.period))
     film = film_of.fresh(np.zeros((4, len(ALONG), 1)))
     for cycle in range(1, cycles + 1):
@@ -489,15 +393,6 @@ def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
     assert film_of.entered(back, 0.75).film.failed is back.film.failed  # nothing is solved anew
 
 
-def test_a_given_limit_is_that_of_every_visit():
-    film_of = FilmOnCells(LAW, (1, 1), VisitLaw(None, 1.0))
-    film = film_of.fresh(np.zeros((4, 1, 1)))
-    for clock, p in ((0.0, 1.0), (0.1, 0.0), (0.2, 1.0)):
-        before = film_of.entered(film, clock)
-        film = film_of.tested(before, before, np.zeros((4, 1, 1)), pressure=np.full((1, 1), p), sign=1.0)
-    assert film.visits.limit[0, 0] == LIMIT and film.visits.counts.sum() == 1
-
-
 def test_a_limit_of_each_cell_takes_the_place_of_that_of_the_law():
     strain, pressure = np.full((3, 2, 1), 5e-3), np.full((2, 1), 2.4e9)
     lost = LAW.step(FilmState.fresh((2, 1)), strain, pressure).thinning[0, 0]
@@ -533,13 +428,6 @@ class TestPasses:
         assert wear[0] > 0 and passes["work_J"][0] == pytest.approx(np.trapezoid(drive, s))
         assert passes["friction_mean"][0] == pytest.approx(friction.mean())
         assert 0 <= passes["protected_mean"][0] < 1 and 0.1 <= passes["friction_mean"][1] <= 0.4
-
-    def test_visits_tell_how_long_cells_were_out_of_contact(self, found):
-        """Thinning that a visit may take, K_0 sqrt(t)/h of the time without contact."""
-        visits = found.tables["visits"]
-        assert visits["way_m"][-1] == pytest.approx(6 * CELL) and sum(visits["visits"]) > 0
-        np.testing.assert_allclose(visits["time_s"], np.array(visits["way_m"]) / 1.0)
-        np.testing.assert_allclose(visits["thinning_limit"], 3.644e-9 * np.sqrt(visits["time_s"]) / 100e-9)
 
 
 def test_an_elastic_body_with_a_film_meets_every_pass():

@@ -1,24 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Yielding scenes through the semi-analytical solver: the solved state, steps that do not converge, and grids
-that follow the plastic zone unless the user gave them.
-"""
+"""Yielding scenes in SAM: the solved state, steps that do not converge, grids about the plastic zone."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import (
-    LINEAR,
-    MODULUS,
-    PERFECT,
-    RADIUS,
-    RUN_IN_STEEL,
-    SWIFT,
-    SWIFT_YIELD,
-    running_in,
-    scene,
-    yielding,
-)
+from builders import LINEAR, PERFECT, RUN_IN_STEEL, running_in, scene, yielding
 from plastic_start import begin, shrink_first_box
 
 import sam
@@ -32,7 +19,7 @@ from sam.grid.smooth import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
 from sam.planner.make import schedule_of
 from sam.plasticity import history, load_step as plastic_step
-from sam.plasticity.history import LONGER, committed, on_larger_grid
+from sam.plasticity.history import LONGER
 from sam.scene import Scene, Status
 from sam.scene.yield_curve import Swift
 from sam.schedule import Load
@@ -40,7 +27,6 @@ from verification.reference.point_loads import boussinesq_stress
 from verification.reference.stress import von_mises
 
 FEW, SMALL = {"cells": (33, 33)}, {"cells": (17, 17)}
-A = np.pi * 4 * SWIFT_YIELD * RADIUS / (2 * MODULUS)  # Hertz at p0 = 4 yield stresses
 
 
 @pytest.fixture(scope="module")
@@ -90,17 +76,6 @@ def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     assert (axis["mises_Pa"][peak & (axis["peeq"] == 0)] <= curve.stress(0.0) * (1 + 1e-6)).all()
 
 
-def test_unloading_leaves_a_dent_and_residual_stress(swift4):
-    line, last = swift4.tables["line"], swift4.tables["history"]
-    unloaded = np.array([state == "unloaded" for state in line["state"]])
-    uz = np.asarray(line["uz_m"])[unloaded]
-    assert uz[16] == pytest.approx(swift4.quantities["residual_uz_center_m"], rel=1e-12)
-    assert uz[16] == uz.max() > 0 and np.asarray(line["p_Pa"])[unloaded].max() == 0.0
-    assert uz == pytest.approx(uz[::-1], rel=1e-6)  # a symmetric dent
-    assert swift4.quantities["residual_mises_max_Pa"] > 0.05 * SWIFT_YIELD
-    assert last["force_N"][-1] == 0.0 and "one step" in last["note"][-1]
-
-
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
     """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for
     bit.
@@ -131,38 +106,6 @@ def test_the_first_box_does_not_matter(monkeypatch):
     assert other.status is right.status is Status.CONVERGED
     for name in ("peeq_max", "residual_uz_center_m", "residual_ux_center_m"):
         assert other.quantities[name] == pytest.approx(right.quantities[name], rel=1e-4)
-
-
-def test_a_step_starts_from_the_last_one_without_an_operator():
-    """The change of a step is what the operator makes of its increment; scaled, it is where the next step
-    starts. A trial that did not converge is not committed.
-    """
-    a_scene = yielding(3, grid=FEW)
-    model, now = begin(a_scene)
-    problem, counters, force = model.problem(now.extent), model.counters, a_scene.loading.force
-    now = committed(model, now, problem.step(now.state, Load(0.5 * force)), None)
-    applied, iterations = counters.operator_applications, counters.plastic_iterations
-    change, guess = now.change, now.guess(Load(force))
-    assert guess.ratio == 1.0 and now.guess(Load(0.75 * force)).ratio == pytest.approx(0.5)
-    trial = problem.step(now.state, Load(force), guess=guess)
-    assert counters.operator_applications - applied == counters.plastic_iterations - iterations > 0
-    with pytest.raises(ValueError, match="did not converge"):
-        now.state.after(replace(trial, converged=False))
-    expected = problem.residual(problem.virgin().residual, change.increment.strain)
-    for name in ("displacement", "stress"):
-        found, right = getattr(change.residual, name), getattr(expected, name)
-        assert np.abs(found - right).max() <= 1e-6 * np.abs(right).max()
-    whole = trial.change(now.state)  # here as half of what is twice as large
-    twice = replace(whole.increment, points=whole.increment.points.each(lambda values: 2 * values))
-    half = replace(whole, increment=twice, residual=whole.residual.times(2), ratio=0.5)
-    done, start = counters.plastic_iterations, {"guess": half, "start": trial.pressure}
-    again = problem.step(now.state, trial.load, **start)
-    residual = trial.residual.displacement
-    assert counters.plastic_iterations == done
-    assert again.residual.displacement == pytest.approx(residual, abs=1e-12 * np.abs(residual).max())
-    unstressed = replace(start["guess"].residual, stress=0 * expected.stress)
-    problem.step(now.state, trial.load, **start | {"guess": replace(start["guess"], residual=unstressed)})
-    assert counters.plastic_iterations > done
 
 
 def test_unloading_in_steps_takes_equal_parts_of_the_force():
@@ -222,49 +165,12 @@ def test_the_result_says_how_many_steps_needed_the_longer_iteration(monkeypatch)
     assert result.cost["step_cuts"] == 0 and 0 in result.tables["residuals"]["accepted"]
 
 
-def test_a_worn_surface_that_does_not_settle_is_solved_longer(monkeypatch):
-    """After a removal there is no load to halve: the first iteration there is cut short."""
-    short, cut = plastic_step.Problem.step, []
-
-    def step(problem, state, load, **keys):
-        trial = short(problem, state, load, **keys)
-        if not keys and load.force == 0 and not problem.longer:
-            cut.append(load)
-            return replace(trial, converged=False)
-        return trial
-
-    monkeypatch.setattr(plastic_step.Problem, "step", step)
-    notes = sam.solve(running_in(cycles=1)).tables["history"]["note"]
-    assert cut and any(LONGER in note and "m3 removed" in note for note in notes)
-
-
-def test_the_loops_of_the_paper_know_no_longer_iteration(monkeypatch):
-    monkeypatch.setattr(plastic_step, "ITERATIONS", 3)
-    monkeypatch.setattr(history, "MOST_CUTS", 0)
-    monkeypatch.setattr("sam.plasticity.paper.OUTER", 1)
-    result = sam.solve(yielding(2.5, PERFECT, grid=SMALL, solver={"method": "paper", "tolerance": 1e-4}))
-    assert result.status is Status.STEP_CUT_LIMIT
-    assert len(result.tables["residuals"]["iteration"]) == 1
-
-
 # grids
 
 
 def sides(grid) -> tuple[float, float]:
     """(side, depth) in m."""
     return grid.nx * grid.hx, float(grid.faces[-1])
-
-
-def test_rows_of_a_profile_that_make_no_layers():
-    """Those nearer to one above than a fiftieth of a cell or so, those far below, and one alone."""
-    plain = choose_grid(yielding(4, grid=FEW)).faces
-    for depths in ((0.0,), (5 * A,), (0.0, 1e-4 * A)):
-        profile = tuple((z, 1.0) for z in depths)
-        faces = choose_grid(yielding(4, {**SWIFT, "profile": profile}, grid=FEW)).faces
-        assert np.array_equal(faces, plain)
-    near = ((0.3 * A, 0.5), (0.301 * A, 1.0))
-    step = choose_grid(yielding(4, {**SWIFT, "profile": near}, grid=FEW)).faces / A
-    assert np.abs(step - 0.3).min() < 1e-9 < 5e-4 < np.abs(step - 0.301).min()
 
 
 @pytest.mark.parametrize(("nu", "profile", "bulk"), [(0.3, None, 1e9), (0.0, ((0.0, 3.0), (1e-6, 0.5)), 5e8)])
@@ -364,15 +270,3 @@ def test_given_layers_below_a_rough_body_stay_and_the_message_says_how_deep_they
     result = sam.solve(rough(depths=(0.0, 0.3e-6, 0.8e-6, 1.6e-6, 3e-6), cycles=1))
     assert result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE and "grid_enlarged" not in result.discretisation
     assert 'grid.depths (or grid.depth) go down to "4.5 um"' in result.message
-
-
-def test_layers_that_a_larger_grid_has_not_begin_anew():
-    """A kink that only the further layers hold would move a face above it."""
-    model, now = begin(rough())
-    grid = model.grid
-    faces, depths = np.append(grid.faces, 2 * grid.faces[-1]), np.append(grid.depths, 1.0)
-    larger = replace(grid, faces=faces, depths=depths)
-    assert on_larger_grid(now, grid, larger) is not None
-    moved = faces * np.where(np.arange(len(faces)) == len(grid.faces) - 1, 1.01, 1.0)
-    assert on_larger_grid(now, grid, replace(larger, faces=moved)) is None
-    assert on_larger_grid(now, grid, replace(larger, nx=grid.nx + 2)) is None

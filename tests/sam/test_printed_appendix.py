@@ -107,10 +107,7 @@ def tangential_load(x: float, y: float, z: float, printed=frozenset()) -> list[f
 @pytest.mark.parametrize(("i", "j", "z"), [(3, 2, 0.5), (1, 1, 0.2)])
 @pytest.mark.parametrize(
     ("form", "load", "misprints"),
-    [
-        (normal_load, 3, {"1 - nu": ["11", "22"]}),
-        (tangential_load, 1, {"331": ["33"], "131": ["13"]}),
-    ],
+    [(normal_load, 3, {"1 - nu": ["11", "22"]}), (tangential_load, 1, {"331": ["33"], "131": ["13"]})],
 )
 def test_stress_under_a_patch(form, load, misprints, i, j, z):
     """With the factor 1/(2 pi), which is not printed; each misprint is seen in its components."""

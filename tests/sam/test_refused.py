@@ -424,8 +424,7 @@ def test_a_malformed_scene_is_refused_by_name_and_nothing_is_created(message, ba
 
 
 @pytest.mark.parametrize(
-    "key, content, pieces",
-    [("file", *case) for case in CURVES] + [("profile", *case) for case in PROFILES],
+    "key, content, pieces", [("file", *case) for case in CURVES] + [("profile", *case) for case in PROFILES]
 )
 def test_a_malformed_file_of_a_scene_is_refused_by_line(message, key, content, pieces):
     law = keys(f"law = '{'table' if key == 'file' else 'perfect'}'; {key} = 'curve.csv'", AT)
@@ -494,12 +493,7 @@ IN_PYTHON = [
     (rows_of(0.0, 1e9), f"{AT}file", "", "row 1: 0.0 is not two numbers"),
     (rows_of((0.0, 1e9), (0.1, 1e9, 2)), f"{AT}file", "", "row 2: "),
     (rows_of((0.0, np.nan)), f"{AT}file", "", "row 1: yield_stress_Pa = NaN"),
-    (
-        {"surface": {"kind": "file", "path": np.zeros((5, 5))}},
-        "surface.path",
-        "",
-        "wrap it: samfem.HeightMap(array",
-    ),
+    ({"surface": {"kind": "file", "path": np.zeros((5, 5))}}, "surface.path", "", "wrap it: samfem"),
     (described(sha256="00" * 31), "surface.path", "0000", "or sha256, cells and extent of one"),
     (described(cells=(2, 8)), "surface.path", "sha256", "or sha256, cells and extent of one"),
 ]

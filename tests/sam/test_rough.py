@@ -1,28 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Rough bodies and rough counter-bodies in the semi-analytical model: against smooth bodies of the same shape
-and each other; borders, spots, and what is recorded.
-"""
-
-from dataclasses import replace
+"""Rough bodies and counter-bodies in SAM: against each other; borders, spots, maps that are used in parts."""
 
 import numpy as np
 import pytest
-from builders import LINEAR, MODULUS, STEEL, running_in, scene
+from builders import LINEAR, STEEL, scene
 
-from sam import UnsupportedScene, choose_grid, left_out, plan, solve
+from sam import UnsupportedScene, left_out, plan, solve
 from sam.contact.convolution import Counters
-from sam.plasticity import Extent, history
 from sam.results.rough import in_the_fall_off, too_few_cells
-from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status, resolved
+from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status
 from sam.scene.surface import heights
-from verification.cost.plan import plan as cost_plan
-from verification.runs import models
-from verification.runs.files import read_run, write_run
-from verification.runs.models import FEM, FEM_3D, ModelError
 
 FLAT, BALL = {"shape": "flat"}, {"shape": "sphere", "radius": 0.4e-3}
 R, F = 100e-6, 0.05
-A0 = (3 * F * R / (4 * MODULUS)) ** (1 / 3)
 SIDE = 20e-6
 WAVE = {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 10e-6, "wavelength_y": 8e-6}
 OTHER = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
@@ -41,10 +31,6 @@ def of_heights(height, n: int, side: float, counterbody=FLAT, force=F, **tables)
     surface = {"kind": "file", "path": HeightMap(height(x[:, None], x) + np.zeros((n, n)), (side, side))}
     loading = {"force": force} | tables.pop("loading", {})
     return scene(counterbody=counterbody, surface=surface, loading=loading, **tables)
-
-
-def paraboloid(x, y):
-    return -(x**2 + y**2) / (2 * R)
 
 
 def patch(n: int, force=0.6, **tables) -> Scene:
@@ -66,30 +52,6 @@ def column(result, table: str, name: str) -> np.ndarray:
     return np.asarray(result.tables[table][name])
 
 
-def test_a_paraboloid_of_heights_is_the_sphere():
-    """The same cells, gaps equal but for rounding: pressures to 1e-9 (the contact's own tolerance is 1e-10),
-    from wherever heights are counted.
-
-    The friction of the rigid counter-body couples; the largest stress leaves the axis, not the plane y = 0.
-    """
-    n, side = 49, 4 * A0
-    depths = tuple(np.linspace(0, 1.5 * A0, 16))
-    grid = {"cells": (n, n), "extent": (side, side), "depths": depths}
-    smooth = scene(counterbody={"radius": R}, loading={"force": F}, friction=0.3, grid=grid)
-    rough = of_heights(lambda x, y: 1e-6 + paraboloid(x, y), n, side, friction=0.3, grid={"depths": depths})
-    one, other = solve(smooth), solve(rough)
-    assert one.converged and other.converged
-    for name, value in one.quantities.items():
-        if "_center_" in name:
-            assert other.quantities[name] is None  # a patch has no centre
-        elif value is not None and name != "pressure_centroid_x_m":
-            assert other.quantities[name] == pytest.approx(value, rel=1e-7, abs=1e-20), name
-    assert one.quantities["p_center_Pa"] > 0
-    for table, name in (("line", "p_Pa"), ("line", "uz_m"), ("plane", "mises_Pa"), ("axis", "sxx_Pa")):
-        a, b = column(one, table, name), column(other, table, name)
-        assert np.abs(a - b).max() < 1e-8 * np.abs(a).max()
-
-
 def test_a_pit_below_a_punch_carries_nothing():
     """The profile of a punch stays: cells beside it cannot touch, whatever the heights."""
     pit, punch = lambda x, y: -1e-6 * ((x**2 + y**2) < (2e-6) ** 2), {"shape": "punch", "radius": 6e-6}
@@ -99,9 +61,7 @@ def test_a_pit_below_a_punch_carries_nothing():
 
 
 def test_spots_share_and_mean_gap_by_hand():
-    """Six cells that stand out by 1 um under next to no load: an L cut by the edge, two that meet at a
-    corner, one alone.
-    """
+    """Six cells that stand out by 1 um: an L cut by the edge, two that meet at a corner, one alone."""
     tall = np.zeros((8, 8))
     tall[[0, 0, 1, 3, 4, 6], [4, 5, 5, 1, 2, 6]] = 1e-6
     found = solve(of_heights(lambda x, y: tall, 8, 8e-6, force=1e-6)).quantities
@@ -176,33 +136,6 @@ def test_what_the_fall_off_of_the_border_makes_is_said(outside, inside, words):
     assert bool(found) == bool(words) and words in found
 
 
-def test_surface_table_and_fields_hold_the_heights(tmp_path):
-    given = of_heights(lambda x, y: paraboloid(x, 1.4 * y), 12, 4 * A0, loading={"unload": True})
-    result = solve(given)
-    write_run(result, given, tmp_path / "run")
-    run = read_run(tmp_path / "run")
-    table = run.tables["surface"]
-    assert list(table) == ["state", "x_m", "y_m", "height_m", "p_Pa", "worn_m", "friction"]
-    assert len(table["x_m"]) == 2 * 144
-    expected = paraboloid(table["x_m"], 1.4 * table["y_m"])
-    assert np.allclose(table["height_m"], expected, rtol=0, atol=1e-20)
-    peak, h = table["state"] == "peak", 4 * A0 / 12
-    assert table["p_Pa"][peak].sum() * h**2 == pytest.approx(F, rel=1e-9) and not table["p_Pa"][~peak].any()
-    assert np.array_equal(np.isfinite(table["friction"]), table["p_Pa"] > 0) and not table["worn_m"].any()
-    assert run.summary["scene"] == resolved(given) and run.scene == given
-    assert result.fields.cell_data["height_m"][:144] == pytest.approx(table["height_m"][:144])
-    assert not (tmp_path / "run" / "cycles.csv").exists()
-
-
-def test_depths_are_fine_near_the_surface_and_reach_an_eighth_of_the_side():
-    depths = choose_grid(patch(64)).depths
-    steps = np.diff(depths)
-    assert depths[0] == 0 and np.allclose(steps[:8], 0.25e-6) and (np.diff(steps) > -1e-12).all()
-    assert 8e-6 <= depths[-1] < 1.2 * 8e-6
-    text = "\n".join(cost_plan(patch(64)).lines(verbose=True))
-    assert "stress lies anywhere below the patch" in text and "left out  stress outside the plane" not in text
-
-
 def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     """1e-14 is met here; a share of it is below rounding."""
     given = patch(32, solver={"tolerance": 1e-14})
@@ -210,26 +143,6 @@ def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
     monkeypatch.setattr("sam.elastic.problem.REACHED", 1e-18)
     result = solve(given)
     assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message
-
-
-def test_contact_outside_of_the_plastic_box_is_found(monkeypatch):
-    """Two equal summits, and a first box about one of them: each carries half, to 1e-8 (measured 1e-9)."""
-    first = history.first_extent
-
-    def about_one(*arguments, **keys) -> Extent:
-        extent = first(*arguments, **keys)
-        window = extent.window
-        return replace(extent, window=replace(window, nx=window.nx // 2))
-
-    monkeypatch.setattr(history, "first_extent", about_one)
-    summits = np.maximum(
-        *(paraboloid(centres(32, SIDE)[:, None] + x, centres(32, SIDE)) for x in (-5e-6, 5e-6))
-    )
-    tables = {"body": {"plasticity": LINEAR}, "grid": {"depths": FACES}, "solver": {"tolerance": 1e-5}}
-    result = solve(of_heights(lambda x, y: summits, 32, SIDE, force=0.04, loading={"steps": 2}, **tables))
-    p = column(result, "surface", "p_Pa").reshape(32, 32)
-    assert result.converged and result.quantities["peeq_max"] > 4e-3
-    assert np.abs(p - p[::-1]).max() < 1e-8 * p.max()
 
 
 # a rough counter-body
@@ -289,20 +202,6 @@ def test_parts_of_a_long_map_begin_at_its_first_cell():
     assert [found.stretch(k).window[0].start for k in (0, 1, 63, 64)] == [1016, 1032, 2024, 8]
 
 
-def test_only_a_renewed_counter_surface_strains_in_every_cycle():
-    """Isotropic hardening ends elastic where the same cells meet the same counter-body."""
-    same, renewed = (
-        solve(running_in(cycles=3, film=0.2, wear=None, counterbody={"surface": {**OTHER, "renew": renew}}))
-        for renew in (False, True)
-    )
-    same, renewed = same.tables["cycles"], renewed.tables["cycles"]
-    # of the second the box is the whole grid: equal to a tenth of the tolerance
-    assert same["new_strain_max"][0] == pytest.approx(renewed["new_strain_max"][0], rel=1e-5)
-    assert same["new_strain_max"][0] > 0
-    assert same["new_strain_max"][1:] == [0.0, 0.0] and same["yielding_cells"][1:] == [0, 0]
-    assert min(renewed["new_strain_max"]) > 1e-4 and min(renewed["yielding_cells"]) > 0
-
-
 def test_maps_of_both_bodies_have_one_grid():
     small, own = (
         {"kind": "file", "path": HeightMap(np.eye(n) * 1e-7, (s, s))} for n, s in ((8, 8e-6), (32, SIDE))
@@ -315,16 +214,3 @@ def test_a_scene_without_its_maps_is_refused_by_name():
     known = HeightMap.known_by("0" * 64, (32, 32), (SIDE, SIDE))
     with pytest.raises(UnsupportedScene, match=r"counterbody\.surface\.path"):
         solve(scene(counterbody={**FLAT, "surface": {"kind": "file", "path": known}}))
-
-
-@pytest.mark.parametrize(
-    "model, counterbody, key",
-    [
-        (FEM, {**BALL, "surface": WAVE}, "counterbody.surface.kind"),
-        (FEM_3D, {**BALL, **STEEL, "surface": WAVE}, "counterbody.young"),
-        (FEM_3D, {**FLAT, "surface": DISC}, "counterbody.surface.renew"),
-    ],
-)
-def test_finite_elements_refuse_by_name_what_they_cannot_represent(model, counterbody, key):
-    with pytest.raises(ModelError, match=key):
-        models.check(pressed(counterbody, loading={"cycles": 2}), model)

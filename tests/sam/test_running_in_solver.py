@@ -13,12 +13,10 @@ import sam
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
-from sam.grid.cells import Sides, Window
-from sam.plasticity import Extent, history
+from sam.plasticity import history
 from sam.scene import FrictionMap, Status
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from verification.cost.plan import plan
-from verification.reference.bonded_film import overall_coefficient
 
 CELL = (16e-6 / 24) ** 2
 
@@ -57,19 +55,6 @@ def test_a_small_patch_runs_in():
     assert run["worn geometry"] and run["chemical film"]
 
 
-def test_the_overall_coefficient_is_that_of_the_loads_on_both_kinds_of_spots():
-    """Summed independently: 0.1 + 0.3 of the load on cells where the film has failed."""
-    result = solved(cycles=2)
-    p, friction = (surface(result, "peak", name) for name in ("p_Pa", "friction"))
-    mu = overall_coefficient(p, friction > 0.25, 0.1, 0.4, cell_area=CELL)
-    # q/p of the table is 0.4 up to rounding
-    assert result.quantities["friction_coefficient"] == pytest.approx(mu, rel=1e-12)
-    assert result.tables["cycles"]["friction_coefficient"][-1] == pytest.approx(mu, rel=1e-12)
-    assert np.isnan(friction[p == 0]).all()
-    protected = np.mean(friction[p > 0] < 0.25)
-    assert result.tables["cycles"]["protected_fraction"][-1] == pytest.approx(protected, rel=1e-12)
-
-
 def test_a_limit_out_of_reach_is_no_wear():
     """Plain cyclic contact: an infinite limit and one that is never reached leave what none does, bit by bit;
     a later cycle adds little of the first, as Swift steel hardens.
@@ -95,23 +80,6 @@ def test_a_limit_out_of_reach_is_no_wear():
     assert 0 < sa - cycles["sa_m"][-1] < 0.2 * sa  # flattened, and not by much
 
 
-def test_what_a_sound_layer_keeps_is_counted():
-    """A layer that is never removed: all cells beyond the limit below it stay; those of the last cycle are in
-    the unloaded body.
-    """
-    wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
-    steel = SWIFT | {"layer_thickness": 0.2e-6, "layer": SWIFT}
-    wear |= {"smoothing_window": 0}
-    found = sam.solve(running_in(counterbody=STEEL, plasticity=steel, wear=wear))
-    body = found.grids["unloaded"]["body"]
-    beyond = np.asarray(body.cell_data["peeq"])[..., 2:] > 0.002
-    kept = (np.diff(body.x)[0] * np.diff(body.y)[0] * np.diff(body.z)[2:] * beyond).sum()
-    cycles = found.tables["cycles"]
-    assert found.converged and cycles["wear_volume_m3"] == [0.0, 0.0]
-    first, last = cycles["roofed_volume_m3"]
-    assert 0 < first <= last == pytest.approx(kept, rel=1e-12)
-
-
 @pytest.mark.parametrize("fills", [False, True])
 def test_the_wear_of_a_cycle_is_the_sum_of_its_parts(fills):
     """Below a layer that never wears: without a filter what is under the roof, and the roof; all is gone that
@@ -131,54 +99,8 @@ def test_the_wear_of_a_cycle_is_the_sum_of_its_parts(fills):
     assert (worn.min() < 0) == (cycles["filled_volume_m3"] > 0).all() == (left > 0.002) == fills
 
 
-def test_the_loop_of_the_paper_over_cycles():
-    """It leaves the stress within its tolerance of the yield surface in each cycle, and the flow rule not
-    obeyed by percents, where ours leaves both within its own; so its strain is another one.
-    """
-    scene = running_in(counterbody=STEEL, solver={"method": "paper", "tolerance": 1e-3})
-    found, exact = sam.solve(scene), solved(cycles=2)
-    cycles = found.tables["cycles"]
-    assert found.converged and max(cycles["yield_excess"]) <= 1e-3 and min(cycles["flow_residual"]) > 1e-2
-    assert max(cycles["yield_excess"]) >= found.certificate["yield_excess"]
-    assert 0 < cycles["wear_volume_m3"][0] < cycles["wear_volume_m3"][1]
-    assert "yield_excess" not in exact.tables["cycles"]
-    strain, wear = (
-        cycles[name][0] / exact.tables["cycles"][name][0] for name in ("peeq_max", "wear_volume_m3")
-    )
-    assert 1.02 < strain < 1.3 and wear == pytest.approx(1.0, abs=0.02)
-
-
-def test_every_failed_cell_fails_in_the_converged_contact(monkeypatch):
-    """At the end of a step the film is tested once more: nothing further fails, and all that failed did so
-    for a pressure near its limit at least.
-    """
-    seen, committed = [], history.committed
-
-    def watched(model, now, trial, film):
-        if film is not None and trial.load.force:
-            failed = film.film.failed
-            pressure = np.zeros((24, 24))
-            pressure[now.extent.window.slices] = trial.pressure * model.unit
-            plastic = now.state.material.strain + trial.increment.strain
-            strain = model.surface_strain(now.extent, trial.stress, plastic)
-            again = model.plan.tribofilm.tested(
-                now.tribofilm, now.tribofilm, strain, pressure=pressure, sign=trial.load.sign
-            ).film.failed
-            seen.append((int(failed.sum()), int((failed & ~again).sum()), int((again & ~failed).sum())))
-        return committed(model, now, trial, film)
-
-    monkeypatch.setattr(history, "committed", watched)
-    sam.solve(running_in(counterbody=STEEL, cycles=1))
-    failures = np.array(seen)
-    assert failures[-1, 0] > 5 and (failures[:, 2] == 0).all()
-    # raised friction may lower the pressure of its own cell, so that a failed film would just have held
-    assert failures[:, 1].sum() <= 0.1 * failures[:, 0].sum()
-
-
 def test_local_friction_of_a_map_acts_where_it_is():
-    """High friction on every other row of cells: the overall coefficient is the mean, weighted by what these
-    carry.
-    """
+    """High friction on every other row of cells: the overall coefficient is the weighted mean."""
     local = np.where(np.arange(24)[:, None] % 2, 0.4, 0.1) * np.ones((24, 24))
     path = FrictionMap(local, (16e-6, 16e-6))
     found = sam.solve(running_in(film={"law": "map", "path": path}, wear=None, cycles=1, steps=1))
@@ -214,53 +136,3 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
     alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
     assert np.abs(new - alone).max() <= 1e-7 * alone.max()
     assert np.abs(with_failures - alone).max() > 0.01 * alone.max()
-
-
-def test_a_history_whose_box_grows_is_that_of_the_whole_grid(monkeypatch):
-    """With a film, whose cells fail in steps that have not converged: to 1e-7 at a tolerance of 1e-6
-    (measured 8e-9; 3e-7 where the steps on a larger box begin without the guess of the smaller one).
-    """
-    first, boxes, results = history.first_extent, [], []
-
-    def small(grid, *arguments, **keys) -> Extent:
-        extent = first(grid, *arguments, **keys)
-        return replace(extent, window=Window(4, 5, 9, 9) if not boxes else grid.whole)
-
-    monkeypatch.setattr(history, "first_extent", small)
-    given = running_in(counterbody=STEEL, steps=2)
-    given = given.model_copy(update={"solver": given.solver.model_copy(update={"tolerance": 1e-6})})
-    for _ in range(2):
-        results.append(sam.solve(given).quantities)
-        boxes.append(1)
-    grown, whole = results
-    for name in ("p_max_Pa", "peeq_max", "wear_volume_m3", "friction_coefficient", "residual_mises_max_Pa"):
-        assert grown[name] == pytest.approx(whole[name], rel=1e-7), name
-
-
-def test_the_box_grows_after_wear_and_removal_strains_nothing_at_its_bottom(monkeypatch):
-    """A first box that is too shallow, and is not let grow before the first removal, grows in the next load
-    step. The step that finds equilibrium after removal does not enlarge it, and has not to.
-    """
-    worn, seen = [], []
-    first, grown, edge, removed, committed = (
-        history.first_extent, history.grown, history.edge_reached, history._worn, history.committed
-    )  # fmt: skip
-
-    def after_removal(model, now, trial):
-        worn.append(len(seen))
-        return removed(model, now, trial)
-
-    def watched(model, now, trial, film):
-        seen.append((now.extent.layers, bool(trial.increment.strain[:, -1].any())))
-        return committed(model, now, trial, film)
-
-    monkeypatch.setattr(history, "first_extent", lambda *a, **k: replace(first(*a, **k), layers=3))
-    monkeypatch.setattr(history, "grown", lambda extent, *a: grown(extent, *a) if worn else extent)
-    monkeypatch.setattr(history, "edge_reached", lambda *a, **k: edge(*a, **k) if worn else Sides())
-    monkeypatch.setattr(history, "_worn", after_removal)
-    monkeypatch.setattr(history, "committed", watched)
-    result = sam.solve(running_in(counterbody=STEEL, cycles=2))
-    assert result.status is Status.CONVERGED and result.quantities["wear_volume_m3"] > 0
-    assert seen[worn[0] - 2] == (3, True) and seen[-1][0] > 3
-    assert not any(seen[k][1] for k in worn) and len(worn) == 2
-    assert result.certificate["yield_excess_outside_box"] <= 1e-4

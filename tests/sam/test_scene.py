@@ -1,32 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Scenes: units, every error of a file at once, files that a scene names, and what is read back; refusals by
-name stand in test_refused.
-"""
+"""Scenes: units, every error of a file at once, files that a scene names, and what is read back."""
 
-import difflib
 import hashlib
 import json
 import os
 import pickle
-import subprocess
-import sys
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path as FilePath
 
 import numpy as np
 import pytest
-from builders import (
-    GIVEN,
-    HARDENING,
-    PATH,
-    SPHERE_TEXT,
-    YIELD_CURVE as CURVE,
-    friction_text,
-    given_pressure,
-    parsed,
-    scene_text,
-)
+from builders import HARDENING, PATH, SPHERE_TEXT, YIELD_CURVE as CURVE, parsed, scene_text
 from hypothesis import given, strategies as st
 from pydantic import ValidationError
 
@@ -35,11 +20,9 @@ from sam.scene import (
     Body,
     Coating,
     CounterBody,
-    Friction,
     Grid,
     Inputs,
     Loading,
-    Path,
     Plasticity,
     Scene,
     SceneError,
@@ -52,7 +35,7 @@ from sam.scene import (
     units,
 )
 from sam.scene.body import LAWS
-from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
+from sam.scene.yield_curve import DepthProfile
 
 SHIPPED = sorted((FilePath(verification.__file__).parent / "scenes").rglob("*.toml"))
 
@@ -85,15 +68,6 @@ def test_what_is_no_scene_is_refused_and_nothing_is_created(folder, refused, tex
 def test_every_command_refuses_a_malformed_scene(folder, refused, name):
     (folder / "bad.toml").write_text(young("3"))
     assert "body.young = 3" in refused(name, "bad.toml")
-
-
-def test_a_malformed_scene_in_a_process_of_its_own(folder):
-    (folder / "bad.toml").write_text(young('"210 mm"'))
-    command = [sys.executable, "-m", "samfem.cli", "solve", "bad.toml"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and done.stdout == "" and "Traceback" not in done.stderr
-    assert 'body.young = "210 mm"' in done.stderr and "a pressure as a string" in done.stderr
-    assert [entry.name for entry in folder.iterdir()] == ["bad.toml"]
 
 
 def test_files_that_cannot_be_read_as_text(folder, samfem):
@@ -137,18 +111,6 @@ unload_steps = 0
     assert {"friction.direction", "wear"} <= {each.key for each in caught.value.problems}
 
 
-def test_many_unknown_keys_are_compared_with_the_known_ones_up_to_those_that_are_shown(monkeypatch):
-    compared, near = [], difflib.get_close_matches
-    monkeypatch.setattr(
-        difflib, "get_close_matches", lambda name, *a, **k: compared.append(name) or near(name, *a, **k)
-    )
-    keys = "".join(f"yuong_{k} = 1\n" for k in range(300))
-    with pytest.raises(SceneError) as caught:
-        parse_scene(scene_text(("[body]\n", f"[body]\n{keys}")).encode(), "bad.toml")
-    assert str(caught.value).count("did you mean young?") == 100 == len(set(compared))
-    assert str(caught.value).endswith("and 200 more") and len(caught.value.problems) == 300
-
-
 # units
 
 
@@ -169,9 +131,7 @@ def test_units_of_pressure(text, value):
 @pytest.mark.parametrize("micro", ["um", "\N{MICRO SIGN}m", "\N{GREEK SMALL LETTER MU}m"])
 @given(count=st.integers(1, 10**6))
 def test_conversion_rounds_once(micro, count):
-    """Exact rational arithmetic, rounded to the nearest float, is the independent answer: not one digit is
-    lost.
-    """
+    """Exact rational arithmetic, rounded to the nearest float: not one digit is lost."""
     assert parsed(("105 um", f"{count} {micro}")).counterbody.radius == float(Fraction(count, 10**6))
 
 
@@ -200,22 +160,6 @@ def test_a_prefix_is_the_factor_of_pint(unit):
     assert units._factor("Pa", "m") is None and units._factor("inch", "m") == Decimal("0.0254")
 
 
-def test_units_are_read_where_there_is_no_proc():
-    """dask, which pint loads where it is installed, asks psutil for the cores; psutil then knows of no
-    process.
-    """
-    program = (
-        "import psutil\n"
-        "def none(self, *_): raise psutil.NoSuchProcess(1)\n"
-        "psutil.Process.__init__ = none\n"
-        "from sam.scene.units import in_unit\n"
-        "print(int(in_unit('105 um', 'nm')))\n"
-        "import sys; print('dask' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert (done.stdout.split(), done.returncode) == (["105000", "False"], 0), done.stderr
-
-
 # what is read, and read back
 
 
@@ -234,18 +178,6 @@ def test_python_takes_si_floats_or_strings_with_units():
         Body(young=1.0, poisson=0.3, yung=2.0)
     with pytest.raises(ValidationError, match="frozen"):
         scene.body.young = 1.0
-
-
-def test_resolved_is_complete_and_reads_back():
-    add = 'unload = true\n[grid]\ncells = [65, 33]\ndepths = ["0 um", "0.5 um"]\n[fem]\nbox = 6\n'
-    content = resolved(parsed(add=add))
-    assert Scene(**content) == parsed(add=add)
-    assert content["grid"]["cells"] == [65, 33] and content["grid"]["depths"] == [0.0, 0.5e-6]
-    assert content["fem"] == {"cells_per_radius": 16, "box": 6.0} and content["solver"]["tolerance"] == 1e-6
-    given = parse_scene(given_pressure(GIVEN + PATH + "cycles = 3\n").encode(), "s")
-    assert given.counterbody is None and (given.loading.p0, given.loading.radius) == (4e9, 6e-6)
-    assert given.loading.path == Path(start=(-9e-6, 0.0), end=(9e-6, 0.0), steps=4)
-    assert Scene(**resolved(given)) == given
 
 
 def test_a_shipped_scene_is_written_as_a_file_that_gives_it_again(tmp_path):
@@ -278,19 +210,6 @@ def test_a_spelled_number_is_read_as_the_same_float(number, unit):
     assert float(units.in_unit(units.spelled(number, unit), unit)) == number
 
 
-def test_defaults():
-    assert Grid(cells=(65, 65)).extent is None and Grid(extent=(1e-5, 1e-5)).cells is None
-    assert parsed(("0.65 N", "0 N")).loading.force == 0.0 and parsed().coefficient == 0.0
-    assert CounterBody(shape="sphere", radius=2.0).radii == (2.0, 2.0)
-    assert CounterBody(shape="ellipsoid", radius_x=2.0, radius_y=3.0).radii == (2.0, 3.0)
-    assert not CounterBody(shape="sphere", radius=2.0).elastic
-    assert CounterBody(shape="sphere", radius=2.0, young=1e9, poisson=0.2).elastic
-    rubbed = parse_scene(friction_text("coefficient = 0.2").encode(), "s")
-    assert rubbed.friction == Friction(coefficient=0.2) and rubbed.coefficient == 0.2
-    assert rubbed.friction.coupling and rubbed.friction.direction == "constant"
-    assert Friction(coefficient=0, coupling=False, direction="alternating").coefficient == 0.0
-
-
 def test_load_scene_reads_a_file_with_a_byte_order_mark(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_bytes(b"\xef\xbb\xbf" + SPHERE_TEXT.encode())
@@ -310,19 +229,6 @@ def write(folder: FilePath, text: str, **files: str) -> FilePath:
         (folder / f"{name}.csv").write_text(content)
     (folder / "bad.toml").write_text(text, encoding="utf-8")
     return folder / "bad.toml"
-
-
-def test_all_errors_of_a_plastic_scene_and_its_files_are_reported_at_once(folder):
-    law = 'law = "table"\nB = "1 Pa"\nmodulus = 3\nfile = "curve.csv"\nprofile = "p.csv"\nlayer = 1\n'
-    text = plastic(law).replace("0.3", "0.5") + '[wear]\n[solver]\nstop = "strain"\n'
-    write(folder, text, curve="peeq,yield_stress_Pa\n0,x\n0.1,2e9\n0,1e9\n", p="depth_m\n")
-    with pytest.raises(SceneError) as caught:
-        load_scene("bad.toml")
-    found = {problem.key.removeprefix("body.plasticity.") for problem in caught.value.problems}
-    of_others = {"body.poisson", "wear.strain_limit", "loading.unload", "solver.stop"}
-    assert found == {"B", "modulus", "file", "profile", "layer", "layer_thickness"} | of_others
-    (in_curve,) = (str(problem) for problem in caught.value.problems if problem.key.endswith(".file"))
-    assert "line 2" in in_curve and "line 4: peeq = 0 after 0.1" in in_curve and "softening" in in_curve
 
 
 def test_the_python_in_the_refusal_of_a_noisy_curve_writes_the_nearest_one_that_rises(folder):
@@ -355,17 +261,6 @@ def test_a_good_scene_reads_back_from_its_resolved_form_without_its_files(folder
     assert Scene(**content) == scene
     assert content["solver"]["stop"] == "stress" and content["body"]["plasticity"]["law"] == law
     assert scene.body.plasticity.depth_profile() == DepthProfile((0.0, 1e-6, 4e-6), (2.0, 1.5, 1.0))
-
-
-def test_what_a_file_and_python_say_is_the_same(folder):
-    by_file = load_scene(write(folder, plastic(HARDENING["table"]), curve="\ufeff" + CURVE)).body.plasticity
-    rows = [(0.0, 1e9), (0.01, 1.5e9)]
-    assert by_file == Plasticity(law="table", file=rows) == Plasticity(law="table", file=np.array(rows))
-    assert by_file.curve() == Tabulated((0.0, 0.01), (1e9, 1.5e9))
-    laws = [
-        parse_scene(plastic(HARDENING[law]).encode(), "").body.plasticity for law in LAWS if law != "table"
-    ]
-    assert [law.curve() for law in laws] == [Swift(945e6, 20.0, 0.121, 1e6), Linear(1e9, 10.5e9), Linear(1e9)]
 
 
 def test_contradictions_are_seen_between_sections_made_in_python():

@@ -98,9 +98,7 @@ TWO = np.append(np.arange(5.0) / 4, np.arange(2.0, 9.0))
 @pytest.mark.parametrize("error", [0.5, 1e-3, 1e-30])
 @pytest.mark.parametrize("faces", [EVEN, np.arange(3.0), GRADED, TWO], ids=["even", "few", "graded", "two"])
 def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
-    """In place of (h) between layers less than log(8/error)/pi cells apart, and where those and their mirror
-    images are; everywhere if the error is small enough.
-    """
+    """In place of (h), between layers less than log(8/error)/pi cells apart and their images."""
     layers, waves = len(faces) - 1, np.array([[0.0, 0.4, 3.0], [0.0, 1.0, 0.2]])
     box, drawn = Cuboids(Lags(4, 4, 1.0, 1.0), tuple(faces), 0.3), Drawn(faces, waves, 0.3)
     full, both = (next(Sweeps(waves, box, np.float64).matrices(each))[1] for each in (False, True))

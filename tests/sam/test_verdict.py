@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The verdict on repeated loading: cells whose strain per period is known, either side of each limit, and
-material points.
-"""
+"""The verdict on repeated loading: cells whose strain per period is known, either side of each limit."""
 
 from __future__ import annotations
 

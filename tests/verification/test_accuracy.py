@@ -5,12 +5,9 @@ import json
 
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
-from made_results import context
 
 from sam import choose_grid
 from sam.scene import Result, Scene, SceneError, Status
-from verification.cases.case import with_keys
-from verification.cases.cost import accuracy as case
 from verification.cost import accuracy
 from verification.cost.accuracy import Choice, chosen_scene, expected, first_choice, missed, solve
 from verification.cost.advice import table
@@ -137,28 +134,6 @@ def test_what_more_cells_cannot_help_is_said():
     assert result.discretisation["accuracy"]["reached"] and result.uncertainty["p_max_Pa"]["u_box"] > 0.0
 
 
-def test_no_uncertainty_is_no_accuracy():
-    """Steps that were cut on some cells and not on others."""
-
-    def solver(scene):
-        return Result(**vars(made(scene, 1.0, 0.0)) | {"cost": {"step_cuts": choose_grid(scene).nx}})
-
-    result, labels = searched(asked(0.05), solver)
-    assert "has no uncertainty: load steps were cut" in missed(result) and len(labels) < 10
-
-
-def test_load_steps_that_are_cut_differently_are_made_more():
-    """With 3 of them one is cut."""
-
-    def solver(scene):
-        result = made(scene, 1.0, 0.0)
-        return Result(**vars(result) | {"cost": {"step_cuts": int(scene.loading.steps == 3)}})
-
-    result, _ = searched(asked(0.05), solver)
-    assert result.discretisation["accuracy"]["reached"]
-    assert result.uncertainty["peeq_max"]["steps"] == [9, 6, 4]
-
-
 @pytest.mark.parametrize(
     "tables, words",
     [
@@ -205,14 +180,3 @@ def test_the_command_reaches_it(folder, samfem):
     assert found["reached"] and found["quantity"] == "p_max_Pa" and found["relative"] <= 0.01
     exact = CircularContact(0.65, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2)).peak_pressure
     assert abs(summary["quantities"]["p_max_Pa"] / exact - 1) < 0.01
-
-
-def test_the_scenes_of_the_case_have_a_first_choice_and_rows(tmp_path):
-    where = context("accuracy", tmp_path)
-    own = case.subjects(where)
-    asked = (with_keys(scene, "solver", accuracy=0.02) for scene, _ in own.values())
-    assert len(own) == 10 and all(first_choice(scene, SAM) for scene in asked)
-    scene, truth = own["elastic sphere"]
-    (row,) = case.searched(where, scene, truth(where, scene), [0.05])
-    assert row["reached"] and not row["unsaid"] and 0.0 < row["error"] < 0.05
-    assert row["all"] > row["finest"] > 0.0 and row["all"] / row["best-fixed"] == row["over-fixed"]

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Closed forms against independent answers: quadrature of point loads, field equations, reciprocity, Fourier
-series, limits, known values; and bad input.
+"""Closed forms against quadrature of point loads, reciprocity, Fourier series, limits and known values.
 
-Tolerances: the quadratures converge exponentially and meet at rounding error times the condition of the
-integrand (1e-10 to 1e-13 of the largest value); finite differences of order 8 with a step of 0.005 lengths
-leave 1e-11 in first and 1e-9 in second derivatives.
+Tolerances: quadratures meet at rounding error times the condition of the integrand (1e-10 to 1e-13 of the
+largest value); finite differences of order 8 with a step of 0.005 lengths leave 1e-11 in first derivatives.
 """
 
 import math
@@ -41,22 +39,6 @@ def partial(f, point, axis, step):
     return (
         sum(w * (f(*(point + k * shift)) - f(*(point - k * shift))) for k, w in enumerate(WEIGHTS, 1)) / step
     )
-
-
-def assert_elastic(stress, point, nu, step, length):
-    """Equilibrium and compatibility (Beltrami-Michell) at a point; length scales the derivatives."""
-    point, scale = np.asarray(point, dtype=float), np.max(np.abs(stress(*point)))
-    tensor = lambda *x: stress(*x)[TENSOR]  # noqa: E731
-    divergence = sum(partial(tensor, point, k, step)[:, k] for k in range(3))
-    assert np.max(np.abs(divergence)) < 1e-9 * scale / length
-
-    def second(f, i, j):
-        return partial(lambda *x: partial(f, np.array(x), i, step), point, j, step)
-
-    trace = lambda *x: np.trace(tensor(*x))  # noqa: E731
-    laplacian = sum(second(tensor, k, k) for k in range(3))
-    hessian = np.array([[second(trace, i, j) for j in range(3)] for i in range(3)])
-    assert np.max(np.abs(laplacian + hessian / (1 + nu))) < 1e-8 * scale / length**2
 
 
 def disc_nodes(a, b, x, y, z, count=160):
@@ -118,13 +100,6 @@ def chord_displacement(x, y, a, b, power, count=400):
     )
 
 
-def test_point_loads_satisfy_the_field_equations():
-    for nu in RATIOS:
-        for stress in (point_loads.boussinesq_stress, point_loads.cerruti_stress):
-            for point in ((0.4, -0.3, 0.7), (0.02, 0.01, 1.0), (-0.8, 0.5, 0.4)):
-                assert_elastic(lambda *x, f=stress, nu=nu: f(*x, 1.0, nu=nu), point, nu, 0.005, 1.0)
-
-
 @pytest.mark.parametrize("nu", RATIOS)
 @pytest.mark.parametrize("axis, kind", [(2, "boussinesq"), (0, "cerruti")])
 def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
@@ -184,9 +159,7 @@ def test_stress_equals_the_quadrature_of_point_loads(point_stress, closed):
 
 
 def test_line_contact_is_the_quadrature_of_line_forces_and_the_benchmark_of_nafems():
-    """Flamant's stress under pressure and traction, and the logarithm of a line force, over a half-width; the
-    half-width and the pressure of NAFEMS R0094-1; von Mises' first yield at nu = 0.3.
-    """
+    """Flamant's stress and the logarithm of a line force; NAFEMS R0094-1; first yield at nu = 0.3."""
     line, friction = hertz_line.LineContact(math.pi / 2, 1.0, 2.0, 1.0), 0.3
     assert (line.contact_radius, line.peak_pressure) == pytest.approx((1.0, 1.0), rel=1e-15)
     angle, w = np.polynomial.legendre.leggauss(200)  # s = sin(angle) has the root of the edges
@@ -517,21 +490,6 @@ def test_rounded_punch_is_a_sphere_or_flat_in_the_limit():
     assert sharp.approach == pytest.approx(flat.approach, rel=1e-6)
     assert sharp.pressure(r) == pytest.approx(flat.pressure(r), rel=1e-4)
     assert list(sharp.pressure([0.71, 2.0])) == [0.0, 0.0]
-
-
-def test_sphere_satisfies_the_field_equations_the_free_surface_and_the_jump():
-    for nu in RATIOS:
-        sphere = mindlin_cheng.EigenstrainSphere(0.01, 0.5, 0.8, 2.0, nu)
-        for point in ((0.1, -0.2, 0.7), (0.6, 0.3, 0.5), (0.0, 0.9, 1.5), (0.01, 0.0, 0.2)):
-            assert_elastic(sphere.stress, point, nu, 0.0025, 0.5)
-        surface = sphere.stress(np.linspace(0, 3, 7), 0.2, 0.0)
-        assert np.max(np.abs(surface[..., TENSOR[2]])) < 1e-15 * np.max(np.abs(surface)) * 10
-        normal = np.array([0.48, -0.6, 0.64])
-        centre = np.array([0, 0, 0.8])
-        inner, outer = (sphere.stress(*(centre + 0.5 * (1 + s) * normal))[TENSOR] for s in (-1e-12, 1e-12))
-        # continuous traction; the tangential elastic strain jumps by the eigenstrain
-        jump = 2.0 * 0.01 / (1 - nu) * (np.eye(3) - np.outer(normal, normal))
-        np.testing.assert_allclose(outer - inner, jump, rtol=0, atol=1e-10 * np.max(np.abs(inner)))
 
 
 def test_sphere_bulges_the_surface_as_reciprocity_says():

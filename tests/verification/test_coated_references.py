@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reference solutions of the coated half-space, under waves, a sphere, a disc and a sliding traction: field
-equations, limits, potentials of their own, tables.
-"""
+"""References of the coated half-space, under waves, a sphere, a disc and a traction."""
 
 import math
 from itertools import pairwise
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 from many_digits import ManyDigits
 from scipy.integrate import quad
-from scipy.special import j0, j1
+from scipy.special import j1
 
 from verification.reference.burmister import disc_stress, interface_stress
 from verification.reference.coated_changes import (
@@ -22,12 +20,7 @@ from verification.reference.coated_changes import (
     pressure_change,
 )
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
-from verification.reference.coated_traction import (
-    antiplane,
-    coated_sliding_stress,
-    hertz_transform,
-    largest_von_mises as largest_of_traction,
-)
+from verification.reference.coated_traction import coated_sliding_stress
 from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import largest_von_mises, subsurface_stress
 from verification.reference.layered_axisymmetric import CoatedHalfSpace
@@ -69,9 +62,7 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
 
 
 def test_waves_of_full_contact():
-    """p = z/c_zz(k) over that without film, film of Table 1 (0.1 um), rigid and steel: values of another
-    program.
-    """
+    """p = z/c_zz(k) over that without film, film of Table 1 (0.1 um): values of another program."""
     layers = CoatedHalfSpace(80e9, 0.3, 0.1e-6, 210e9, 0.3)
     k = 2 * np.pi / (np.array([1, 2, 5, 10, 20, 50]) * 1e-6)
     bare, coated = 2 / (layers.modulus_body * k), layers.compliance(k)
@@ -108,16 +99,6 @@ def test_coated_sphere_of_the_table(case):
     assert contact.residual() < 1e-12
 
 
-def test_equal_materials_are_hertz():
-    contact = solve_force(CoatedHalfSpace(210e9, 0.3, 1e-7, 210e9, 0.3), 105e-6, 0.17, 210e9 / 0.91)
-    bare = contact.bare
-    r = np.linspace(0, 1.2, 13) * bare.contact_radius
-    assert contact.contact_radius == pytest.approx(bare.contact_radius, rel=1e-11)
-    assert contact.approach == pytest.approx(bare.approach, rel=1e-11)
-    # sqrt(1 - r^2/a^2) at the rim turns an error of 1e-12 in a into 1e-6
-    np.testing.assert_allclose(contact.pressure(r), bare.pressure(r), rtol=0, atol=2e-6 * bare.peak_pressure)
-
-
 @pytest.mark.parametrize("young", [0.1, 10.0])
 def test_thick_film_is_its_own_half_space(young):
     """p(0)/p0 -> (E1/E2)^(2/3), a/a0 -> (E2/E1)^(1/3); the next term is of order (a/h)^3."""
@@ -136,17 +117,6 @@ def test_thin_layer_on_a_rigid_base():
         assert contact.residual() < 1e-10
     assert np.all(np.abs(ratios[0] - 1) < 0.02)
     np.testing.assert_allclose(2 * ratios[1] - ratios[0], 1.0, atol=1e-4)
-
-
-def test_stiff_thin_film_presses_off_the_axis():
-    """E1/E2 = 10, h = 0.2 a0, of another program; the search finds what a scan finds."""
-    contact = film_contact(0.2, 10.0)
-    largest, r = contact.largest_pressure()
-    assert contact.central_pressure / contact.bare.peak_pressure == pytest.approx(1.106, abs=5e-4)
-    assert largest / contact.bare.peak_pressure == pytest.approx(1.176, abs=5e-4)
-    scan = contact.pressure(np.linspace(0, contact.contact_radius, 4001))
-    assert 0 <= largest / np.max(scan) - 1 < 1e-6 and 0.5 < r / contact.contact_radius < 1
-    assert largest == pytest.approx(float(contact.pressure(r)), rel=1e-12)
 
 
 # stresses
@@ -301,40 +271,6 @@ def test_the_interface_holds_together(layers):
     assert np.abs(film - body)[:2].max() > 0.1
 
 
-@COATED
-@pytest.mark.parametrize("k", [0.3, 4.0, 30.0])
-def test_waves_of_traction_have_many_digits(layers, k):
-    """Amplitudes under shear, and the antiplane wave, against a solve of other potentials."""
-    h, ratio = layers.thickness, layers.young / layers.young_body
-    exact = ManyDigits(k * h, ratio, layers.poisson, layers.poisson_body)
-    for z, film in ((0.4 * h, True), (h, True), (h, False), (1.7 * h, False)):
-        zz, shear, along, side, _ = layers.profiles(np.array([k]), layers.amplitudes(k, shear=True), z, film)[
-            :, 0
-        ]
-        right = [float(v) for v in exact.state(k * z, 1, not film)[2:]]
-        assert [zz, along, side, shear] == pytest.approx(right, abs=ROUNDING)
-        turned = antiplane(layers, np.array([k]), z, film)[:, 0] + film * np.exp(-k * z) * np.array([-1, 1])
-        right = [float(v) for v in exact.antiplane_stress(k * z, not film)]
-        assert turned == pytest.approx(right, abs=ROUNDING)
-
-
-def test_transform_of_the_hertz_pressure():
-    for ka in (1e-3, 0.1, 1.0, 7.0):
-        exact = quad(lambda s, ka=ka: np.sqrt(1.0 - s * s) * j0(ka * s) * s, 0.0, 1.0, epsabs=1e-13)[0]
-        assert hertz_transform(np.array([ka]))[0] == pytest.approx(exact, abs=1e-10)  # of the quadrature
-
-
-@pytest.mark.parametrize("film", [True, False])
-def test_largest_is_not_below_a_finer_scan(film):
-    x = np.linspace(-1.2, 1.2, 401)
-    z = np.linspace(0.0, 0.1, 11) if film else np.linspace(0.1, 1.0, 41)
-    scan = von_mises(coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=x, z=z, film=film)).max()
-    peak = largest_of_traction(SOFT, 1.0, 1.0, 0.4, film=film)
-    assert scan <= peak.value * (1.0 + 1e-9) and peak.value < 1.01 * scan
-    at = von_mises(coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=peak.r, z=peak.z, film=film))
-    assert float(at[0, 0]) == pytest.approx(peak.value, rel=1e-9)
-
-
 # bad input
 
 
@@ -345,22 +281,13 @@ def test_largest_is_not_below_a_finer_scan(film):
         (lambda: CoatedHalfSpace(1.0, 0.3, 1.0, 1.0, 0.6), "poisson_body = 0.6"),
         (lambda: LAYERS[0].compliance([0.0]), "k must be > 0"),
         (lambda: solve_radius(LAYERS[0], 1.0, 1e3), "thickness/contact_radius = 0.0004 must be >= 0.001"),
-        (
-            lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0),
-            "counter_modulus = -1.0 must be > 0",
-        ),
+        (lambda: solve_radius(LAYERS[0], 1.0, 1.0, counter_modulus=-1.0), "counter_modulus = -1.0 must be >"),
         (lambda: solve_force(LAYERS[0], 1.0, math.nan), "force = nan"),
         (lambda: film_contact(0.5, 1.0).stress(0.0, 0.6, film=True), "z must be <= thickness = 0.5"),
         (lambda: disc_stress(LAYERS[0], 1.0, 0.0, 0.0), "z must be >= contact_radius/1000"),
         (lambda: thin_layer(LAYERS[1], 1.0, 1.0), "poisson = 0.5: an incompressible"),
-        (
-            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True),
-            "z must be <= thickness = 0.1 m everywhere",
-        ),
-        (
-            lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.05),
-            "z must be >= thickness = 0.1 m everywhere",
-        ),
+        (lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.2, film=True), "z must be <= thickness"),
+        (lambda: coated_sliding_stress(SOFT, 1.0, 1.0, 0.4, x=X, z=0.05), "z must be >= thickness = 0.1 m"),
     ],
 )
 def test_bad_input_names_the_argument(call, message):

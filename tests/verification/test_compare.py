@@ -3,16 +3,12 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from builders import PERFECT, SHAPES, scene
 from made_results import Made, with_column, with_quantities
 
-from fem_reference.common import recovery
-from sam.results import quantities as peaks
-from sam.results.snapshots import Box
 from verification.compare.comparison import compare_scene, names_of_rows, pair_of, wanted
 from verification.compare.own_data import read_data
 
@@ -80,22 +76,6 @@ def rows_of(sam=SAM, fem=FEM, of=PLASTIC) -> dict:
 
 def red(sam, fem, of=PLASTIC) -> set[str]:
     return {name for name, row in rows_of(sam, fem, of).items() if not row.passed}
-
-
-@pytest.mark.parametrize("size", [1.0, 1e-6])
-def test_both_models_find_the_strain_that_a_twentieth_of_the_plastic_volume_exceeds(size):
-    """Linear over depth: 0.01 of the strain ends the plastic volume at 0.99 of the depth."""
-    z = size * np.append(np.linspace(0.0, 0.5, 101), np.linspace(0.51, 1.0, 50))
-    middles, heights = (z[1:] + z[:-1]) / 2, np.diff(z)
-    strain = 0.02 * (1 - middles / size)
-    none = np.zeros((6, 150, 1, 1))
-    box = Box(np.array([0, size]), np.array([0, size]), z, none, none, strain[:, None, None])
-    found = peaks.exceeded_strain(box), recovery.exceeded_strain(strain, heights)
-    assert found == pytest.approx((0.02 * (1 - 0.05 * 0.99),) * 2, rel=5e-4)
-    two = recovery.exceeded_strain(np.array([2.0, 1.0]), size * np.array([1.0, 19.0]))  # at 0.475 and 0.975
-    assert two == pytest.approx(1.95, rel=1e-12)
-    empty = replace(box, peeq=np.zeros((150, 1, 1)))
-    assert peaks.exceeded_strain(empty) is recovery.exceeded_strain(0 * strain, heights) is None
 
 
 def test_equal_fields_agree_on_different_points():
@@ -215,22 +195,6 @@ def test_a_scene_says_which_rows_there_are(tables, added, lost):
         else more == set(added.split())
     )
     assert rows["approach_m"].row.tolerance == (5e-3 if "peeq" in added or "punch" in str(tables) else 2e-3)
-
-
-def test_equal_parabolic_pressures_on_different_points_agree_to_rounding():
-    """p^2 = p0^2 (1 - r^2/a^2) is reproduced exactly between any points."""
-
-    def hertzian(x):
-        p = np.sqrt(np.maximum(0.0, 1.0 - x**2))
-        line = {"state": ["peak"] * x.size, "x_m": x, "p_Pa": p, "uz_m": 0 * x}
-        return SimpleNamespace(quantities={"contact_radius_m": 1.0}, tables={"line": line})
-
-    half = hertzian(np.linspace(0, 5, 78))
-    # 64 points are even in number: nearest the apex p^2 is constant over (h/2)^2, 1e-3 of p0^2 on a disc of
-    # 1e-3 a^2
-    for count, most in ((64, 1e-4), (65, 1e-12)):
-        row = rows_of(hertzian(np.linspace(-2, 2, count)), half, ELASTIC)["p_Pa over the contact"]
-        assert row.error < most
 
 
 def test_what_a_scene_gives_is_not_compared_and_a_path_leaves_a_groove():

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Balances of energy: their sums against closed forms, both models on small contacts, and what sees it when
-one lies.
-"""
+"""Balances of energy: their sums against closed forms, both models on small contacts."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import PERFECT, RADIUS, hertz_force, scene
+from builders import RADIUS, hertz_force, scene
 
 from sam.scene import CounterBody, Scene, plastic_work
 from sam.scene.yield_curve import Linear, Swift, Tabulated
@@ -35,9 +33,7 @@ def sphere(size=5, mu=None, steps=4, law=None) -> Scene:
 
 @pytest.mark.parametrize("peeq", [0.0, 1e-9, 1e-6, 1e-3, 0.2])
 def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
-    """Swift in closed form to 1e-6, over nine decades of the strain; polynomials to rounding; a corner to
-    1e-3.
-    """
+    """Swift in closed form to 1e-6, over nine decades; polynomials to rounding; a corner to 1e-3."""
     at = np.array([peeq])
     swift = Swift(945e6, 20.0, 0.121)
     exact = swift.B / (1.121 * swift.alpha) * ((swift.C + swift.alpha * peeq) ** 1.121 - swift.C**1.121)
@@ -49,9 +45,7 @@ def test_plastic_work_is_the_integral_of_the_yield_curve(peeq):
 
 
 def test_the_work_along_a_path_is_exact_for_straight_parts():
-    """Of f = u at two places: half the squares, whatever the steps; from there back to where it began:
-    nothing.
-    """
+    """Of f = u at two places half the squares, whatever the steps; back again nothing."""
     u = np.array([[0.0, 0.0], [1.0, -0.5], [1.5, 3.0], [0.0, 0.0]])
     assert along_path([u], [u]) == pytest.approx(0.5 * (u**2).sum(axis=1), abs=1e-15)
     assert along_path([u, u], [u, u])[2] == pytest.approx((u[2] ** 2).sum())
@@ -66,13 +60,6 @@ def test_an_elastic_body_gives_all_back(mu):
     found = of_sam.balance_of(sphere(mu=mu))
     assert found.error_of_cells < 1e-13 and abs(found.work[-1]) < 1e-13 * found.work[found.peak]
     assert not found.dissipated.any() and not found.flowed.any()
-
-
-@pytest.mark.parametrize("mu", [None, 0.4])
-def test_a_yielding_body_closes_its_balance(mu):
-    """To 4e-3 of the work at 5 cells in the radius."""
-    found = of_sam.balance_of(sphere(mu=mu, steps=2, law=PERFECT))
-    assert found.error_of_cells < 4e-3 and not found.back.any() and found.dissipated[-1] > 0
 
 
 # --- FEM ----------------------------------------------------------------------------------------------------

@@ -140,20 +140,6 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
             assert np.isfinite(values).all()
 
 
-@pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize("written", [models.SAM], indirect=True)
-def test_the_cells_of_the_surface_are_those_of_the_table(written, state):
-    run = written[1]
-    mesh = pyvista.read(run.folder / f"surface{STATES[state]}.vtr")
-    table = run.tables["surface"].query("state == @state").sort_values(["y_m", "x_m"])
-    places = mesh.cell_centers().points
-    assert places[:, :2] == pytest.approx(table[["x_m", "y_m"]].to_numpy(), abs=1e-9 * SIDE)
-    for name in ("p_Pa", "height_m"):
-        np.testing.assert_array_equal(mesh.cell_data[name], table[name])
-    np.testing.assert_array_equal(mesh.cell_data["friction"], table["friction"].fillna(0.0))
-    assert mesh.cell_data["qx_Pa"] == pytest.approx(0.3 * table["p_Pa"].to_numpy(), rel=1e-12)
-
-
 def test_the_surface_after_each_cycle_is_listed_in_order_and_adds_up(tmp_path):
     """The volume below each surface is that of cycles.csv; the last cycle ends with the unloaded state."""
     scene = running_in(cycles=3)

@@ -5,14 +5,12 @@ import json
 import numpy as np
 import pytest
 from fake_case import FakeCase
-from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 from PIL import Image
 
 from samfem.publishing import report
 from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
-from verification.figures.maps import FieldPair, MapPeak, plane_maps
 from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
 from verification.suite import verify
 
@@ -54,10 +52,7 @@ def beyond_the_sheet(figure, axis):
         (touching, "collide"),
         (beyond_the_sheet, "leaves the sheet"),
         (lambda figure, axis: axis.set_title("p0 = 4 sigma_y0"), "name of a variable"),
-        (
-            lambda figure, axis: axis.yaxis.set_major_locator(FixedLocator([10.0])),
-            "fewer than two numbers",
-        ),
+        (lambda figure, axis: axis.yaxis.set_major_locator(FixedLocator([10.0])), "fewer than two numbers"),
         (lambda figure, axis: axis.set(xlabel="cycle", xlim=(1.0, 2.0)), "broken numbers"),
         (lambda figure, axis: axis.plot(X, 3.0 * X, color=BLUE, linestyle=":"), "no legend has the line"),
         (lambda figure, axis: axis.get_legend().remove(), "no legend has the line"),
@@ -135,14 +130,3 @@ def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
     pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
     assert ("cannot be read" in pages) == bool(code)
     assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
-
-
-def test_maps_side_by_side_hold_every_rule_and_say_what_their_maxima_leave_out():
-    u, v = np.linspace(-1.5, 1.5, 31), np.linspace(0.0, 1.4, 15)
-    field = np.exp(-(u[:, None] ** 2) - (v - 0.5) ** 2)
-    pair = FieldPair(u, v, field, 0.9 * field, ("SAM", "FEM"), ("$x/a$", "$z/a$"), "plastic strain [%]")
-    peaks, levels = [MapPeak(0.0, 0.5, 1.0), MapPeak(0.0, 0.5, 0.9)], [0.2, 0.4, 0.6, 0.8]
-    drawing = plane_maps(pair, peaks, levels, strip=0.3)
-    assert findings(drawing.figure) == []
-    words = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
-    assert "not compared" in words and "in the strip" in words and "max 0.9000" in words

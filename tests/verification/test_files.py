@@ -5,11 +5,8 @@ import csv
 import json
 import math
 import os
-import subprocess
-import sys
 from dataclasses import replace
 from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +15,6 @@ from sam.scene import Body, CounterBody, FieldMesh, LeftOut, Loading, Plasticity
 from sam.scene.result import AXIS, COST, HISTORY, LINE, PLANE, QUANTITIES, SURFACE
 from verification.runs import files
 from verification.runs.files import FolderError, json_text, read_run, write_run
-from verification.runs.meshes import is_mesh
 from verification.runs.provenance import collect
 from verification.runs.tables import csv_text
 
@@ -181,27 +177,6 @@ def test_a_write_that_breaks_off_leaves_no_result(tmp_path, monkeypatch, broken)
     order, broken = [], ""
     write_run(a_result(), SCENE, tmp_path)
     assert read_run(tmp_path).converged and order[-1] == "summary.json" and len(order) == 7
-
-
-def test_a_killed_process_leaves_no_result(tmp_path):
-    """The process dies without any clean-up while the third file is renamed; what it leaves can be written
-    over.
-    """
-    program = (
-        "import os, sys; sys.path.insert(0, 'tests'); rename = os.replace; done = []\n"
-        "def killed(*paths):\n"
-        "    done.append(paths); os._exit(9) if len(done) == 3 else rename(*paths)\n"
-        "os.replace = killed\n"
-        f"sys.path.insert(0, {str(Path(__file__).parent)!r})\nfrom test_files import *\n"
-        f"write_run(a_result(), SCENE, {str(tmp_path)!r})"
-    )
-    root = Path(__file__).parents[2]
-    assert subprocess.run([sys.executable, "-c", program], cwd=root, check=False).returncode == 9
-    hidden, shown = ({e.name for e in tmp_path.iterdir() if e.name.startswith(".") == dot} for dot in (1, 0))
-    assert shown == {"history.csv", "axis.csv"} and len(hidden) == 1  # the temporary file
-    write_run(a_result(), SCENE, tmp_path)
-    names = {entry.name for entry in tmp_path.iterdir()}
-    assert {name for name in names if not is_mesh(name)} <= set(files.RUN_FILES)
 
 
 def test_an_older_run_is_replaced_and_nothing_else(tmp_path):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Growth of time and memory: exponents, processes that measure themselves alone, predictions against measured
-memory; both against the published code.
-"""
+"""Growth of time and memory: exponents, processes that measure themselves alone, the published code."""
 
 import json
 import os
@@ -10,10 +8,9 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
-from builders import PERFECT, RUN_IN_STEEL, SWIFT, running_in, scene
+from builders import PERFECT, SWIFT, scene
 from made_results import of_frame, red
 
-import sam
 from sam.scene import parse_scene
 from verification.cases.case import Context
 from verification.cases.cost import growth as case, published_code
@@ -69,26 +66,6 @@ def test_a_process_measures_its_own_memory_and_one_thread(idle):
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
-def test_a_rung_is_measured(idle, monkeypatch):
-    monkeypatch.setattr(growth, "REPEATS", 1)
-    made = growth.measured_at(growth.square("elastic", (33,), "hertz-sphere", **growth.ONE_STEP)[0], idle)
-    assert made["converged"] and made["size"] == 33**2 and made["cpu-s"] > 0 and made["memory"] > 0
-
-
-def test_more_iterations_for_a_softer_layer_a_film_and_another_plane():
-    def further(**keys) -> float:
-        ready = running_in(cycles=8, **keys)
-        return estimates.rough_iterations(ready, sam.plan(ready))[1]
-
-    thick, plane = {"layer_thickness": 1e-6}, {"kind": "self-affine", "sq": 1e-9, "cutoff_long": 16e-6}
-    plane |= {"cutoff_short": 8e-6, "hurst": 0.8, "seed": 5}
-    soft = RUN_IN_STEEL | thick | {"layer": RUN_IN_STEEL | {"alpha": 1e3}}
-    assert further(plasticity=soft) > 1.5 * further() > 3.0 * further(film=None)
-    assert further(wear=0.02) < further(wear=0.002)
-    same, other = (further(counterbody={"surface": plane | {"renew": renew}}) for renew in (False, True))
-    assert other > 1.2 * same
-
-
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_yielding_body_without_a_load_has_an_estimate(model):
     none = scene(body={"plasticity": SWIFT}, loading={"force": 0.0})
@@ -103,13 +80,6 @@ def test_back_stresses_count_by_what_they_add_at_one_per_cent():
     for law, expected in ((PERFECT, 0.0), (PERFECT | {"kinematic": kinematic}, added)):
         found = estimates._back_hardening(scene(body={"plasticity": law}), np.array([1e-6, 2e-6]))
         assert found == pytest.approx(expected, rel=1e-13)
-
-
-@pytest.mark.parametrize("film", [None, {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}])
-def test_newton_iterates_more_under_more_load_only_where_hertz_says_how_much_yields(film):
-    body = {"plasticity": PERFECT, "coating": film}
-    some, more = (estimates.newton_iterations(scene(body=body, loading={"force": f})) for f in (0.1, 0.8))
-    assert more == some if film else more > some
 
 
 def test_factors_are_found_from_counts():
@@ -130,12 +100,6 @@ def test_every_count_has_a_factor():
             found = estimates.counted(rung.scene, rung.model)
             assert found.bytes.keys() <= estimates.MEMORY[rung.model].keys()
             assert found.work.keys() <= estimates.TIME[rung.model].keys()
-
-
-def test_a_box_is_applied():
-    box = growth.applied(6, 5, 3)
-    assert box["cells"] == 90 and box["set-up-s"] > 0 and box["cpu-s"] > 0
-    assert box["stored"] >= 36 * 9 * 30 * 4
 
 
 def synthetic(power: float = 1.0) -> tuple[dict, dict]:

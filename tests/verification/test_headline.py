@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from made_histories import as_the_paper_says
 from made_studies import over_inputs, over_physics, verdicts
@@ -16,7 +15,6 @@ from verification.runs.files import plain
 from verification.suite.pages import write_report
 from verification.suite.pages.headline import (
     COLUMNS,
-    FINER,
     INPUTS,
     MEANING,
     NOT_RUN,
@@ -110,15 +108,6 @@ def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(
     assert found.answer[:80] in index.text and MEANING[:40] not in index.text
     places = [page.text.index(words[:40]) for words in (found.answer, found.depends, MEANING)]
     assert sorted(places) == places and places[-1] < page.text.index("Gate closest to its tolerance")
-
-
-def test_what_finer_cells_refute_is_said(readings):
-    said = as_the_paper_says()
-    busy = {**said, BULK: replace(said[BULK], volume=1e-18 * np.arange(1.0, 26.0))}
-    finer = record(FINER, statements(coarse=verdicts([said]), fine=verdicts([busy])))
-    text = headline_of(read_stored(stored(readings, finer))).answer
-    assert "1 of these 13 (bulk: worn in the first six cycles) failed on finer cells" in text
-    assert "not counting such, 12 of 15 hold." in text
 
 
 def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Where the model ends: what is said, refused and stopped, and what says so of a scene that goes on."""
 
-import json
 from math import pi, sqrt
 
 import numpy as np
@@ -10,8 +9,6 @@ from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
 
 import sam
 from sam.scene import Result, Scene, Status
-from samfem.compared import asked
-from samfem.comparison_page import write_report
 from verification.figures.space import offscreen
 from verification.runs import models
 from verification.runs.files import read_run, read_summary
@@ -181,14 +178,3 @@ def test_every_file_and_figure_says_that_a_contact_is_outside_of_the_model(folde
     assert len(meshes) >= 2 and all(OUTSIDE.encode() in (place / name).read_bytes() for name in meshes)
     tables = list((place / "figures").glob("*.csv"))
     assert tables and all(OUTSIDE in table.read_text().splitlines()[0] for table in tables)
-
-
-def test_compare_says_it_on_its_page_and_in_python(folder):
-    found = asked(scene(fem={"cells_per_radius": 8}, loading={"force": 5.0})).answer()
-    assert len(found.range_lines) == 1 and "mean pressure 3.2 % too low" in found.range_lines[0]
-    page = write_report({"five": found}, {}, folder / "page").read_text()
-    assert "(small strains, flat half-space): mean pressure" in page
-    assert (
-        found.range_lines[0]
-        in json.loads((folder / "page" / "results.json").read_text())["cases"][0]["notes"]
-    )

@@ -4,10 +4,8 @@
 import copy
 import json
 import re
-from dataclasses import replace
 from fnmatch import fnmatch
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -19,16 +17,13 @@ from verification.suite.pages import write_report
 from verification.suite.pages.answers import (
     PARTS,
     RESULT,
-    UNGATED,
     Evidence,
-    Pair,
     answers_of,
     cell,
     kind_of,
     pairs_of,
     percent,
     sentence,
-    times,
     value,
 )
 from verification.suite.pages.mathml import formula, with_scripts
@@ -76,25 +71,6 @@ def test_published_pages_are_sound_small_and_lead_to_each_other(published):
     files = [path for path in REPORTS.rglob("*") if path.is_file()]
     sizes = [path.stat().st_size for path in files if "latest" not in path.relative_to(REPORTS).parts[0]]
     assert max(sizes) < 2 * MEGABYTE and sum(sizes) < 15 * MEGABYTE
-
-
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        ("<h1>A</h1><p><table></table></p>", "<table> in a paragraph"),
-        ("<h1>A</h1><h3>B</h3>", "a heading of level 3"),
-        ('<h1>A</h1><img src="a.png" alt="">', "a.png without a text"),
-        ('<h1 id="a">A</h1><p id="a"></p>', "id a twice"),
-        ("<h1>A</h1><script></script>", "a script"),
-    ],
-)
-def test_a_fault_is_seen(text, fault):
-    assert any(each.startswith(fault) for each in faults_of(PageReader(text)))
-
-
-def test_a_broken_link_is_seen(tmp_path):
-    page = PageReader('<h1 id="here">A</h1><a href="#here"></a><a href="none.html"></a><a href="#there"></a>')
-    assert broken_links({"a.html": page}, tmp_path) == ["a.html: none.html", "a.html: #there"]
 
 
 def test_words_stay_words_and_nothing_of_a_formula_is_lost():
@@ -167,14 +143,6 @@ def test_failed_gates_are_told_apart_by_what_they_are_about(results):
     assert "1 failed (1 about a result)" in said(changed(held, "peers.same-solution", status="failed"))
 
 
-@pytest.mark.parametrize(("case", "quantity", "why"), [*PAGES["pairs"]["beyond"], ("hertz-*", "p_max", None)])
-def test_a_number_without_a_gate_is_told_why_it_is_far_off_where_that_is_known(case, quantity, why):
-    pair = Pair(SimpleNamespace(name=case.replace("*", "x")), f"{quantity} [Pa]", "FEM", 1.1, 1.0)
-    assert pair.why == (f"no gate; {why}" if why else UNGATED)
-    gated = replace(pair, gate={"tolerance": 0.2, "reason": "half a cell"})
-    assert gated.why == "the gate allows 20 %: half a cell"
-
-
 def test_a_share_has_two_digits_or_is_rounding_or_nothing():
     expected = ["\N{MINUS SIGN}1.2\N{NO-BREAK SPACE}%", "rounding", "0\N{NO-BREAK SPACE}%"]
     assert [percent(share) for share in (-0.01234, 1e-9, 0.0)] == expected
@@ -184,35 +152,6 @@ def test_a_gate_without_a_number_is_no_finding(results):
     gate = "peers.same-solution"
     assert list(value(evidence_of(results), "", gate))
     assert not list(value(evidence_of(changed(results, gate, value=None, error=None)), "", gate))
-
-
-TIMES = {"one": {"SAM": (0.5, False), "FEM, 3D": (3.11, False), "FEM, axisymmetric": (1.5, True)}}
-TIMES |= {
-    "two": {"SAM": (None, False), "FEM, 3D": (7.0, False)},
-    "three": {"SAM": (0.1, True), "FEM": (0.4, False)},
-}
-
-
-def test_costs_are_those_of_the_fastest_elements():
-    data = {"times": [(problem, "load", of) for problem, of in TIMES.items()]}
-    stored = SimpleNamespace(ran={"work-precision": SimpleNamespace(case={"data": data})})
-    (found,) = times(Evidence(stored, []), "")
-    assert found.value == "< 3 to > 4 times" and "2 of 3 contacts (2 of them as bounds)" in found.words
-
-
-def test_the_page_of_costs_begins_with_what_became_slower_or_larger():
-    first = next(question for question in PAGES["question"] if question["page"] == "cost")
-    rows = [
-        ["processor time", "1.41", "more than 1.2 in running-in (1.41)"],
-        ["peak memory", "0.9", "in a-2"],
-    ]
-    table = {"caption": "Largest ratios", "columns": ["what", "ratio", "where"], "rows": rows}
-    stored = SimpleNamespace(ran={"published-code": SimpleNamespace(case={"tables": [table]}, gates=[])})
-    slower, larger = (
-        next(cell(Evidence(stored, []), *part)) for kind, *part in first["parts"] if kind == "cell"
-    )
-    assert slower.value == "1.41 times" and slower.words.endswith(": more than 1.2 in running-in (1.41)")
-    assert larger.value == "0.9 times" and larger.words.endswith("memory: in a\N{MINUS SIGN}2")
 
 
 def test_the_published_index_answers_every_question(evidence):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SAM beside other programs, without them: problems, errors, times to an error, and child processes that
-fail.
-"""
+"""SAM beside other programs, without them: problems, errors, times to an error, processes that fail."""
 
 import json
 import math
@@ -20,7 +18,7 @@ from verification.peers import elastic, plastic, problems, running, worker
 from verification.peers.programs import aspher, sam as ours
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
 from verification.rows import load_rows
-from verification.suite.verify import main, show
+from verification.suite.verify import main
 
 
 class TestProblems:
@@ -133,10 +131,6 @@ class TestEnvironment:
         monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
         assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
 
-    def test_list_says_that_it_runs_when_named(self, capsys):
-        assert show("cases", ["peers"]) == 0
-        assert capsys.readouterr().out.splitlines()[1].split()[:4] == ["peers", "when", "named", "6"]
-
     def test_versions_are_asked_of_the_interpreter(self, tmp_path):
         answers = script(tmp_path / "python", """echo '{"tamaas": "2.9.0"}'""")
         assert running.installed(answers) == {"tamaas": "2.9.0"}
@@ -205,9 +199,7 @@ def in_process(program, each, python, allowance=0.0):
 
 class TestRounds:
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
-        """Ratios of times made ten to one, tables and figures whole, and a program that is not built is
-        told.
-        """
+        """Times made ten to one, tables and figures whole, a program that is not built."""
         for module in (running, elastic):
             monkeypatch.setattr(module, "run", in_process)
         monkeypatch.setattr(running, "calibration_s", lambda: 0.2)

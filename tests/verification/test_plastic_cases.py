@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the elasto-plastic cases look at: forces of their levels, grids, allowances, means over rings and load
-histories.
-"""
+"""What the elasto-plastic cases look at: allowances, means over rings, extrapolation, load histories."""
 
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Error against cost: brackets, interpolation, references with an uncertainty, and the curves of the case
-made of them.
-"""
+"""Error against cost: brackets, interpolation, references with an uncertainty, curves made of them."""
 
 import math
 from dataclasses import replace
@@ -20,14 +18,7 @@ from verification.cases.cost import work_precision as case, work_precision_probl
 from verification.cases.cost.work_precision_problems import AXISYMMETRIC, COUPLED, SPATIAL, TWICE
 from verification.cases.sweep import tables_of
 from verification.cost.advice import NEVER, read_rows, table_text
-from verification.cost.precision import (
-    Ladder,
-    Reached,
-    agreed,
-    at_error,
-    bracket,
-    limit_of,
-)
+from verification.cost.precision import Ladder, Reached, agreed, at_error, bracket, limit_of
 from verification.figures.style import save
 from verification.figures.work_precision import overview
 from verification.runs import models
@@ -54,9 +45,7 @@ def test_the_bracket_is_where_the_error_falls_below_the_target_for_good(errors, 
 
 
 def test_time_is_interpolated_in_the_logarithms():
-    """error = 0.4/n^2, time = 0.01 n^3: time = 0.01 (0.4/error)^1.5 at every error between the ends; none is
-    claimed below the floor.
-    """
+    """error = 0.4/n^2, time = 0.01 n^3: time = 0.01 (0.4/error)^1.5; none below the floor."""
     n = np.array([2.0, 4.0, 8.0, 16.0])
     for target in (0.05, 0.003):
         assert at_error(0.01 * n**3, 0.4 / n**2, target).value == pytest.approx(0.01 * (0.4 / target) ** 1.5)

@@ -4,14 +4,12 @@
 import gzip
 import json
 from concurrent.futures import Executor, Future
-from dataclasses import replace
 
 import pytest
 from fake_case import FakeCase, row
 from stored import COARSE
 from test_report import sketch
 
-from sam.scene import Status
 from samfem import publishing
 from verification.cases.case import Case, Context, Figure, NotDrawnError, Outcome, Plot, with_loading
 from verification.judging import Measured
@@ -121,19 +119,6 @@ def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, publi
     assert [report_in(tmp_path)[key] for key in ("cases", "gates")] == [before["cases"], before["gates"]]
 
 
-def test_the_longest_begin_and_of_other_code_nothing_is_taken(tmp_path, published, monkeypatch):
-    run(tmp_path)
-    results = report_in(tmp_path)
-    for case in results["cases"]:
-        case |= {"seconds": {"second": 9.0, "first": 1.0}.get(case["name"]), "code": "of other code"}
-    (tmp_path / "out" / "results.json").write_text(json.dumps(results))
-    monkeypatch.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
-    monkeypatch.setattr(outcomes, "unchanged", lambda: True)
-    published.runs.clear()
-    run(tmp_path)
-    assert published.runs == ["second", "first", "timed"]
-
-
 def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_nothing(
     tmp_path, published, monkeypatch
 ):
@@ -155,24 +140,6 @@ def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_no
     codes = [case["code"] for case in report_in(tmp_path)["cases"]]
     assert codes[0] == codes[1] != codes[2] == "of other code"
     assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
-
-
-def test_what_stays_is_judged_by_the_gates_of_today_unless_they_measure_something_else(
-    tmp_path, published, monkeypatch
-):
-    def gates(**changed):
-        for module in (verify, freshness):
-            monkeypatch.setattr(module, "load_rows", lambda: [row(ROWS[0].id, **changed), *ROWS[1:]])
-
-    run(tmp_path)
-    gates(tolerance=0.001)
-    run(tmp_path, store="new", code=1)
-    results = report_in(tmp_path)
-    assert [case["status"] for case in results["cases"]] == ["failed", "passed", "passed"]
-    assert [gate["tolerance"] for gate in results["gates"]] == [0.001, 0.1, 0.1] and len(published.runs) == 3
-    gates(metric="absolute")
-    run(tmp_path, store="new", code=1)  # a pressure in Pa, 1 % off
-    assert published.runs[3:] == ["timed"]
 
 
 def interrupted(*arguments, **keys):
@@ -206,27 +173,6 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     assert counted == 2 * [models.SAM]  # "first" has one of the scenes
     results = report_in(tmp_path)
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
-
-
-class Lost(Shared):
-    """None of its runs converges, which it expects."""
-
-    def solve(self, context):
-        return [context.solve(models.SAM, scene, "lost", demand=False) for scene in self.scenes]
-
-    def measure(self, found):
-        return {"one": Measured(sum(not one.converged for one in found), 2)}
-
-
-def test_runs_without_a_converged_result_are_solved_once_too(
-    tmp_path, published, monkeypatch, counted, coarse_results
-):
-    lost = replace(coarse_results[models.SAM], status=Status.NOT_CONVERGED, message="no")
-    monkeypatch.setitem(coarse_results, models.SAM, lost)
-    monkeypatch.setattr(publishing, "all_cases", lambda: {"lost": Lost("lost", "lost", "Is it lost?")})
-    monkeypatch.setattr(verify, "load_rows", lambda: [row("lost.one")])
-    run(tmp_path)
-    assert counted == 2 * [models.SAM]  # ahead, and not again by the case
 
 
 class Undrawn(Case):

@@ -25,10 +25,7 @@ COARSE = '[grid]\ncells = [17, 17]\nlayers = 12\ndepth = "12 um"\n[fem]\ncells_p
 
 
 def places_in(folder: Path, own: tuple[str, ...] = ()) -> list[str]:
-    """The absolute paths in the text files of a folder, each as `file: text`.
-
-    own: further texts that must not occur.
-    """
+    """The absolute paths in the text files of a folder, each as `file: text`; own: further texts."""
     found = []
     for path in sorted(folder.rglob("*")):
         if path.is_file() and path.suffix in TEXTS:

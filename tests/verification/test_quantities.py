@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every quantity of the vocabulary against its definition, on results made by hand: a value that is scaled,
-shifted or transposed is seen.
-"""
+"""Every quantity of the vocabulary against its definition, on results made by hand."""
 
 from dataclasses import replace
 

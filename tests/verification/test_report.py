@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
 
-import csv
 import errno
 import json
 import time
@@ -9,7 +8,6 @@ from dataclasses import replace
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 from builders import scene_text
 from fake_case import FakeCase, row
@@ -18,10 +16,8 @@ from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS
 
 from samfem.cli import main
-from verification.cases.case import Outcome, Plot, SmallTable, View
-from verification.figures import space
-from verification.figures.profiles import Profile, profiles
-from verification.figures.style import Drawing, new_figure, save
+from verification.cases.case import Outcome, Plot, SmallTable
+from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
@@ -32,12 +28,6 @@ ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
     for case, name in (("good", "one"), ("good", "two"), ("bad", "one"), ("broken", "one"), ("slow", "one"))
 ]
-
-
-def drawing():
-    x = np.linspace(0.0, 1.0, 11)
-    panel = Profile("Title", "$x$", "$y$", np.cos, {"SAM": (x, np.cos(x) + 0.01)}, 1.0, "$y$", (0.0, 1.0))
-    return profiles([panel])
 
 
 def sketch():
@@ -131,13 +121,6 @@ def test_what_is_unknown_is_exit_code_2_and_nothing_is_created(tmp_path, monkeyp
     assert said in capsys.readouterr().err and list(tmp_path.iterdir()) == []
 
 
-def test_folder_with_other_files_is_left_alone(tmp_path):
-    (tmp_path / "figures").mkdir()
-    (tmp_path / "figures" / "holiday.png").write_bytes(b"x")
-    assert run(tmp_path, "good") == 2
-    assert [path.name for path in tmp_path.rglob("*") if path.is_file()] == ["holiday.png"]
-
-
 def test_earlier_report_is_replaced(tmp_path):
     out = tmp_path / "out"
     run(out, "good")
@@ -176,23 +159,6 @@ def test_pages_of_what_has_ended_can_be_opened_and_the_earlier_report_stays(tmp_
     assert run(out) == 1 and not new.exists() and results(out)["complete"]
 
 
-def test_a_report_that_was_killed_on_its_way_into_place_is_put_there_by_the_next_start(tmp_path, monkeypatch):
-    out, whole = tmp_path / "out", tmp_path / "whole"
-    run(whole, "good")
-    for name in ("remove_pages", "shutil.rmtree", "Path.replace"):
-        run(out, "bad")
-        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-            patch.setattr(verify, "_take_over", stopped)
-            run(out, "good")
-        with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-            patch.setattr(f"verification.suite.verify.{name}", stopped)
-            verify.begin(out)
-        assert verify.problem_of([], CASES, out) == ""
-        verify.begin(out)
-        names = files_in(out).keys() - {f"{verify.UNFINISHED}/results.json"}
-        assert names == files_in(whole).keys() and results(out)["complete"]
-
-
 def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys):
     def full(context):
         raise OSError(errno.ENOSPC, "No space left on device", "runs/good/line.csv")
@@ -204,28 +170,6 @@ def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys)
     (tmp_path / "file").touch()
     assert main(["verify", "--out", str(tmp_path / "file")]) == 2
     assert "no folder that can be written to" in capsys.readouterr().err
-
-
-def test_what_it_takes_is_said_before_and_what_a_case_found_as_it_ends(tmp_path, monkeypatch, capsys):
-    costs = {
-        "good": Cost(60.0, 70.0, 3.0, 4.0),
-        "bad": Cost(30.0, 50.0, 1.0, 0.0),
-        "broken": Cost(*4 * [0.0]),
-    }
-    monkeypatch.setattr(forecast, "costs_at", lambda level: costs)
-    run(out := tmp_path / "out")
-    said = capsys.readouterr().out.splitlines()
-    assert said[:4] == [
-        "3 cases with 4 of the 5 gates, quick level.",
-        "Estimate: 90 s in one process, 2 min of processor time; "
-        "disk: 4 MB in the report, 4 MB in the store.",
-        f"Pages of the cases that have ended: {out / 'unfinished/index.html'}; "
-        f"the whole report: {out / 'index.html'}",
-        "To run less, name cases: make report CASES=hertz-sphere, or samfem verify hertz-sphere",
-    ]
-    ended = [line.rpartition(", ")[0] for line in said[4:7]]
-    assert ended[:2] == ["1 of 3: good: 2 gates passed", "2 of 3: bad: 0 gates passed, 1 failed"]
-    assert ended[2].startswith("3 of 3: broken: 0 gates passed, 1 failed, broke off: RuntimeError: <b>no</b>")
 
 
 def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatch):
@@ -241,28 +185,6 @@ def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatc
     assert ahead.left == ", about 20 s left"
     unknown = forecast.Forecast({"one": Cost()})
     assert (unknown.left, unknown.words) == ("", "Time and disk: not known.")
-
-
-def test_list_has_one_line_a_case_and_gates_the_rest(tmp_path, monkeypatch, capsys):
-    """Of all cases, or of those named; nothing is written."""
-    monkeypatch.chdir(tmp_path)
-    assert main(["verify", "--list"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["case", "levels", "gates", "title"]
-    assert [line.split()[0] for line in lines[1:]] == list(CASES)
-    assert lines[1].split() == ["good", "quick,", "full", "2", "Good", "case"]
-    assert main(["verify", "--list", "bad"]) == 0 and len(capsys.readouterr().out.splitlines()) == 2
-    assert main(["verify", "--gates"]) == 0
-    assert capsys.readouterr().out.count("because of ") == len(ROWS)
-    assert main(["verify", "good", "--gates"]) == 0
-    assert capsys.readouterr().out.splitlines() == [
-        "good: Does it hold?",
-        "  good.one: quantity one, FEM: relative difference at most 0.1",
-        "      because of one",
-        "  good.two: quantity two, FEM: relative difference at most 0.1",
-        "      because of two",
-    ]
-    assert list(tmp_path.iterdir()) == []
 
 
 def page_of(out, name="other.html"):
@@ -284,50 +206,6 @@ def test_pages_need_no_script_and_what_they_link_is_there(tmp_path):
     page = page_of(out, "report.html")
     assert [image["src"][:22] for image in page.all("img")] == ["data:image/png;base64,"]
     assert all(words in page.text for words in ("Good case", "Bad case", "Broken case", "because of two"))
-
-
-def in_space(context):
-    outcome = good(context)
-    figures, outcome.notes = context.look([View("sam", "worn", "space", "In space", "Caption")])
-    outcome.figures += figures
-    return outcome
-
-
-def test_a_picture_in_space_is_on_the_page_or_why_the_machine_cannot_draw_it(tmp_path, monkeypatch):
-    save(sketch(), tmp_path / "picture", data=False)
-    monkeypatch.setitem(CASES, "good", FakeCase("good", "Good", "Does it hold?", does=in_space))
-    out = tmp_path / "out"
-
-    def draw(folder, name):
-        assert (folder, name) == (out / "unfinished" / "runs" / "good" / "sam", "worn")
-        return {name: (tmp_path / "picture.png").read_bytes()}
-
-    def cannot(folder, name):
-        raise space.CannotDrawError("no pictures in space: install EGL")
-
-    for how, count in ((draw, 2), (cannot, 1)):
-        monkeypatch.setattr(space, "draw", how)
-        run(out, "good")
-        page = page_of(out)
-        links = {anchor["href"] for anchor in page.all("a")}
-        assert len(page.all("img")) == count and ("figures/good-space.png" in links) is (how is draw)
-        assert not links & {"", "figures/good-space.csv"}
-        assert ("No pictures in space: install EGL." in page.text) is (how is cannot)
-
-
-def test_page_says_what_held_and_why(tmp_path):
-    run(tmp_path / "out")
-    index = page_of(tmp_path / "out", "index.html").text
-    assert "2 of 4 gates hold, 2 failed" in index
-    assert "3 of the 4 cases ran; the others: 1 of the full level (--level full)." in index
-    text = page_of(tmp_path / "out").text
-    assert "2 of 3 cases failed." in text and "Not in this report" in text
-    places = [text.index(f"{each} case") for each in ("Bad", "Good", "Slow")]
-    assert places == sorted(places)
-    said = ("Does it hold?", "because of two", "Force", "a<b&c", "not a finite number", "scene.toml", "Small")
-    assert [words for words in said if words not in text] == []
-    raw = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
-    assert "<b>no</b>" not in raw and "&lt;b&gt;no&lt;/b&gt; convergence" in raw
 
 
 def test_junit_has_one_testcase_a_gate(tmp_path):
@@ -377,14 +255,6 @@ def test_rebuild_refuses_a_folder_without_a_finished_report(tmp_path, monkeypatc
     assert main(["report", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out" / "index.html").exists() and "no finished" in capsys.readouterr().err
     assert run(tmp_path / "out", "bad") == 1  # an interrupted report can be run again
-
-
-def test_figures_are_deterministic_and_say_their_numbers(tmp_path):
-    first, second = ([path.read_bytes() for path in save(drawing(), tmp_path / name)] for name in ("a", "b"))
-    assert first == second
-    (*_, last) = csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8"))
-    assert list(last) == ["panel", "series", "x", "value", "closed_form", "error_percent"]
-    assert float(last["error_percent"]) == pytest.approx(1.0, rel=1e-5)  # 0.01 of scale 1, five digits
 
 
 OWN = """

@@ -17,7 +17,7 @@ import pytest
 from builders import running_in
 from matplotlib.collections import QuadMesh
 
-from sam.scene import FrictionMap, Scene
+from sam.scene import Scene
 from verification.cost.contact import hertz_of
 from verification.figures.run import drawings_of, history
 from verification.runs import models
@@ -101,9 +101,7 @@ def panel_of(name: str, figure: str, model: str = models.SAM, k: int = 0):
 
 
 def mesh_of(panel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells of a panel, and their values (nx, ny), NaN
-    where blank.
-    """
+    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells, and their values (nx, ny), NaN if blank."""
     (mesh,) = (each for each in panel.collections if isinstance(each, QuadMesh))
     corners = mesh.get_coordinates()
     return corners[0, :, 0], corners[:, 0, 1], np.ma.filled(mesh.get_array().astype(float), np.nan).T
@@ -205,20 +203,6 @@ class TestPlane:
         (bar,) = (each for each in panel.collections if isinstance(each, QuadMesh))
         assert bar.get_clim() == (0.0, pytest.approx(largest))
 
-    def test_of_a_sliding_contact_in_three_dimensions_is_no_mirror_image(self):
-        """Friction moves the largest stress along x; the elements are drawn as they are. Its pressure is
-        mirrored to the whole.
-        """
-        assert panel_of("sphere", "mises").get_xlabel() == "$x/a$"
-        _, _, field = mesh_of(panel_of("sliding", "mises", models.FEM_3D))
-        run, panel = run_of("sliding", models.FEM_3D), panel_of("sliding", "pressure", models.FEM_3D)
-        _, y, p = mesh_of(panel)
-        assert y[0] == pytest.approx(-y[-1]) and np.array_equal(p, p[:, ::-1], equal_nan=True)
-        assert np.nanmax(p) == pytest.approx(1e-9 * run.quantities["p_max_Pa"], rel=1e-12)
-        table = run.tables["plane"]
-        assert np.abs(field - field[::-1]).max() > 0.1 * field.max()
-        assert np.isin(field[np.isfinite(field)], 1e-9 * table["mises_Pa"]).all()
-
 
 @pytest.mark.parametrize("model", [models.SAM, models.FEM])
 class TestCoated:
@@ -232,21 +216,6 @@ class TestCoated:
             both = known[1:] & known[:-1]
             assert not ((z[:-1] < film * (1 - 1e-9)) & (z[1:] >= film * (1 - 1e-9)) & both).any()
             assert (z[known] < film * (1 - 1e-9)).any() and (z[known] > film).any()
-
-
-def test_friction_that_varies_is_drawn_in_contact_only(tmp_path):
-    """A map of friction: low on one side, high on the other."""
-    values = np.where(np.arange(24)[:, None] < 10, 0.1, 0.3) * np.ones((1, 24))
-    friction = {"law": "map", "path": FrictionMap(values, (16e-6, 16e-6)), "coupling": False}
-    scene = Scene(**SCENES["rough"] | {"friction": friction})
-    write_run(models.solve(scene, models.SAM), scene, tmp_path, {})
-    figures = drawings_of(read_run(tmp_path))
-    _, _, field = mesh_of(figures["friction"].figure.axes[0])
-    _, _, pressure = mesh_of(figures["pressure"].figure.axes[0])
-    assert np.array_equal(np.isfinite(field), np.isfinite(pressure))
-    touching = np.isfinite(field)
-    assert field[touching] == pytest.approx(values[touching], rel=1e-12) and np.ptp(field[touching]) > 0.0
-    assert "friction" not in drawn("rough") and "friction" not in drawn("travelling")
 
 
 def test_without_force_there_is_no_map(tmp_path):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: its scenes, measures and statements on made tables, rows on wrong ones, both readings and finer
-cells as a whole. No run is solved.
-"""
+"""Running-in on made tables: scenes, measures, statements, rows and both readings. No run is solved."""
 
 from dataclasses import replace
 
@@ -40,7 +38,7 @@ from verification.compare.running_in_measures import History, Limits, Scar, Spre
 
 SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 SMALL = reduced(SCENES[B], Effort(3, 2, 8))
-CASE, CELLS = running_in.CASES
+CASE, _ = running_in.CASES
 TEN = tuple(range(1, 11))
 INF = float("inf")
 WET = "curve B: the whole surface protected"  # asks for a friction of 0.105 or less
@@ -242,18 +240,6 @@ class TestReadings:
         bulk = running_in.regimes(found, RENEWED)["bulk"]
         assert bulk["reached"] == 5e9 and bulk["removed_from"] == Limits.of(SCENES[BULK]).removal
 
-    def test_where_the_plastic_zone_reaches_the_last_layer_there_are_more(self, solved):
-        shallow = {"bulk-seed-7", "renewed-bulk-seed-7", "renewed-bulk-seed-7-deeper"}
-        found, scenes = solved(shallow=shallow)
-        seventh = found[(found["material"] == BULK) & (found["surface"] == 7)].set_index("reading")["run"]
-        assert seventh["printed inputs"].scene == scenes["bulk-seed-7-deeper"] and len(scenes) == 110
-        assert seventh["printed inputs"].scene.grid.depths[-1] == 19.4e-6
-        assert seventh["printed inputs"].scene.grid.depths[:-2] == scenes["bulk-seed-7"].grid.depths
-        assert seventh[RENEWED].scene.grid.depths[-1] == 36.2e-6
-        notes = " ".join(CASE.notes(found))
-        assert "bulk, surface 7, printed inputs, to 19.4 µm" in notes
-        assert "bulk, surface 7, renewed: plastic-zone-at-grid-edge after 25 cycles." in notes
-
     def test_runs_that_are_lost_are_named_counted_left_out_and_not_drawn(self, solved, monkeypatch):
         for drawing in ("curves", "six_panels", "yield_profiles"):
             monkeypatch.setattr(running_in, drawing, lambda *_, **__: None)
@@ -269,20 +255,3 @@ class TestReadings:
         views = {view.name: view.run for view in CASE.views(found)}
         assert views[f"{A}-worn"] == f"{A}-seed-2"
         assert views[f"renewed-{DUCTILE}-worn"] == f"renewed-{DUCTILE}-seed-1"
-
-    def test_verdicts_that_finer_cells_change_are_named(self, solved):
-        """As the paper says on coarse cells; on fine ones bulk steel wears on."""
-        busy = {"cells-70-bulk-seed-2": history(1e-18 * CYCLES)}
-        found, scenes = solved(CELLS, **busy)
-        assert red_rows(CELLS.name, CELLS.measure(found), whole=True) == set()
-        coarse, fine = CELLS.data(found)["statements"].values()
-        failed = [each["statement"] for each in fine if each["by_median"] == FAILED]
-        changed, _ = CELLS.notes(found)
-        assert changed.count(" (held, then failed)") == len(failed) > 0
-        assert "bulk: hardly any wear later" in failed and all(each["holds_on"] == 1 for each in coarse)
-        assert all(len(row) == len(table.columns) for table in CELLS.tables(found) for row in table.rows)
-        assert red_rows(CELLS.name, CELLS.measure(found[found["material"] != BULK])) == {"missing"}
-        a, b = (scenes[f"cells-{cells}-bulk-seed-2"] for cells in (32, 70))
-        assert a.grid.cells != b.grid.cells and (a.grid.extent, a.loading) == (b.grid.extent, b.loading)
-        windows = [scene.wear.smoothing_window / scene.grid.cells[0] for scene in (a, b)]
-        assert windows == pytest.approx([5 / 32] * 2, rel=0.01)

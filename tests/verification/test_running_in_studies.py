@@ -1,30 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""The studies of running-in over inputs, physics, cells and back-stresses, on a way, at limits of wear and
-against finite elements, on made results: no run of them is solved.
-"""
+"""The studies of running-in on made results: inputs, physics, cells, back-stresses, finite elements."""
 
 from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
-from made_histories import as_the_paper_says, at_rest, history, result_of
+from made_histories import as_the_paper_says, at_rest, result_of
 from made_results import Made, context, of_frame, red
-from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics, studied
+from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics
 
 from fem_reference.spatial import WornCycle
-from sam.scene import GridFields, Plasticity, Status, resolved
+from sam.scene import GridFields, Plasticity, resolved
 from verification.cases import all_cases
 from verification.cases.cyclic import running_in_kinematic as kinematic
 from verification.cases.running_in import (
     running_in_converged as converged,
     running_in_fem as fem,
     running_in_readings as words,
-    running_in_sensitivity as inputs_study,
-    running_in_way as way,
-    running_in_wear as wear,
 )
-from verification.cases.running_in.running_in_converged import COARSEST, DEFAULT, SEEDS, Member
+from verification.cases.running_in.running_in_converged import DEFAULT, SEEDS
 from verification.cases.running_in.running_in_physics import ALL
 from verification.cases.running_in.running_in_sensitivity import INPUTS, PRINTED, scene_at, wilson
 from verification.cases.running_in.study import (
@@ -40,8 +35,10 @@ from verification.cases.running_in.study import (
     B,
     Run,
     framed,
+    off_campaign,
 )
 from verification.figures.check import findings
+from verification.runs.store import Reuse
 from verification.scenes.asperities import SIDE
 
 OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
@@ -86,18 +83,6 @@ class TestInputs:
         assert again == _close(own)
         assert layer is None or layer["alpha"] == pytest.approx(own["body"]["plasticity"]["alpha"], rel=1e-12)
 
-    def test_a_lost_run_says_nothing_and_turns_the_row_red(self, found):
-        assert red(self.CASE.name, self.CASE.measure(found), whole=True) == set()
-        lost = (found.frame["reading"] < 11) & (found.frame["material"] == A)
-        frame = found.frame.mask(lost.to_numpy()[:, None] & (found.frame.columns == "converged"), False)
-        frame.loc[lost, list(frame.columns[5:])] = np.nan
-        some = replace(found, frame=frame)
-        assert red(self.CASE.name, self.CASE.measure(some)) == {"lost"}
-        of_curve_a = [A in each.how.split() for each in STATEMENTS]
-        assert np.isnan(some.held[:, :11]).all(axis=1).tolist() == of_curve_a and sum(of_curve_a) == 7
-        fewer = replace(found, frame=found.frame.iloc[1:])
-        assert "missing" in red(self.CASE.name, self.CASE.measure(fewer))
-
     def test_tables_and_figures_can_be_read(self, found):
         tables = readable(self.CASE, found)
         statements = next(table for table in tables if table.caption.startswith("Probability"))
@@ -117,31 +102,6 @@ class TestInputs:
             assert (end - 81 / 263) ** 2 == pytest.approx(1.644854**2 * end * (1.0 - end) / 263, rel=1e-5)
         assert low < 81 / 263 < high
         assert wilson(0, 20)[0] == 0.0 and wilson(0, 0) == (0.0, 1.0)
-
-
-def fitted(shares, lost=()):
-    """Points that are as the paper says: the statements hold at all of them but those that are lost."""
-    runs = {}
-    for k, case in np.ndindex(len(shares), len(NAMES)):
-        name = list(NAMES)[case]
-        runs[k, name, 7] = Run(
-            scene_at(SCENES[name], shares[k]), result_of(as_the_paper_says()[name], converged=k not in lost)
-        )
-    return studied(shares, runs)
-
-
-class TestFitted:
-    def test_the_nearest_of_the_best_points_comes_first(self):
-        away = PRINTED + np.where(PRINTED < 0.5, 0.4, -0.4)
-        shares = np.array([away, PRINTED, 0.9 * PRINTED + 0.1 * away])
-        found = fitted(shares)
-        assert found.away == pytest.approx([0.4, 0.0, 0.04]) and found.best == [1, 2, 0]
-        found = fitted(shares, lost=[1])
-        assert found.best == [2, 0]
-        table = inputs_study.inputs_table(found)
-        assert table.columns[4:] == ("printed", "point 2: 17 hold", "point 0: 17 hold")
-        row = next(row for row in table.rows if row[0] == "B of Swift's law [MPa]")
-        assert row[1:5] == ("value", "1.28e+03", "1.78e+03", "1.78e+03")
 
 
 def _close(tree):
@@ -208,9 +168,7 @@ class TestReadings:
         assert [each.surface.seed for each in scenes] == sorted(each.surface.seed for each in scenes)
 
     def test_statements_hold_where_the_runs_are_as_the_paper_says(self):
-        """All but that the largest pressure of hardening falls, which the made runs do not tell; so no two of
-        the others exclude each other.
-        """
+        """All but that the largest pressure of hardening falls, which made runs do not tell."""
         name = words.CHANGES[0][0]
         found = self.found(name)
         assert red(self.CASE.name, self.CASE.measure(found), whole=True) == set()
@@ -226,27 +184,50 @@ class TestReadings:
             words.SAID[0], {"values": (0.8,)}
         )
 
-    def test_a_contact_of_few_cells_is_judged_and_counted(self, tmp_path, monkeypatch):
-        own = result_of(as_the_paper_says()[BULK], status=Status.UNDER_RESOLVED)
-        key = words.CHANGES[0][0], BULK, 2
-        monkeypatch.setattr(type(self.CASE), "runs", lambda case, context: {key: Run(SCENES[BULK], own)})
-        found = self.CASE.solve(context(self.CASE.name, tmp_path))
-        assert found["run"].iloc[0].result.status is Status.CONVERGED
-        assert f"judged all the same: {key[0]}: 1." in " ".join(self.CASE.notes(found))
-
     def test_wear_that_does_not_balance_and_a_loop_beyond_its_tolerance_turn_rows_red(self):
         name = words.named(words.PRINTED, "roof stays", "fills")
         assert red(self.CASE.name, self.CASE.measure(self.found(name, wrong=1e-9))) == {"balance"}
         assert red(self.CASE.name, self.CASE.measure(self.found(name, excess=1.1e-3))) == {"excess"}
 
 
+class TestCampaign:
+    def test_runs_are_taken_from_it_and_some_are_solved_again_and_held_against_it(
+        self, tmp_path, monkeypatch
+    ):
+        case, friction = all_cases()["running-in-readings"], as_the_paper_says()[A].friction
+        own, solved, off = context(case.name, tmp_path, level="full"), [], [0.0]
+        one = next(iter(case.scenes(own)))[0]
+        wanted = {key: each for key, each in case.scenes(own).items() if key[0] == one and key[2] < 3}
+        monkeypatch.setattr(type(case), "scenes", lambda *_: wanted)
+        monkeypatch.setattr("verification.cases.running_in.study.resources.files", lambda _: tmp_path)
+
+        def solve(model, scene, label, *, demand):
+            solved.append(label)
+            own.sources[label] = Reuse(True, "2026-01-02T03:04", "abcdefgh")
+            return result_of(replace(as_the_paper_says()[A], friction=friction + off[0]))
+
+        monkeypatch.setattr(own, "solve", solve)
+        before = case.runs(own)
+        assert len(solved) == len(before) == 12 and off_campaign(framed(before, PARTS)) == 0.0
+        case.keep(own, tmp_path / f"{case.name}.csv.gz")
+        monkeypatch.delitem(case.__dict__, "campaign")
+        solved.clear()
+        off[0] = 0.03
+        after = framed(case.runs(own), PARTS, case.numbers)
+        assert solved == [wanted[one, A, 2][0]]
+        assert off_campaign(after) == pytest.approx(0.03, rel=1e-4)
+        told = "Taken from a campaign (12 runs, commit abcdefg, 2026-01-02): 11 of 12 runs"
+        assert list(case.told_of_campaign(after)) == [f"{told}; solved again and held against it: 1."]
+        assert list(case.ahead(own)) == [wanted[one, A, 2][1]]
+        kept = after.set_index("material").loc[B, "run"].iloc[0].history
+        np.testing.assert_allclose(kept.volume, as_the_paper_says()[A].volume, rtol=1e-5)
+
+
 class TestConverged:
     NAME = "wear-converged"
 
     def rows(self, **changed) -> list[dict]:
-        """All surfaces but the second wear; 3 % less at the recommended cells, what they have lost by 5 %.
-        changed: name -> (factor, surfaces).
-        """
+        """All surfaces but the second wear; changed: name -> (factor, surfaces)."""
         rows = []
         for seed in SEEDS:
             row = {"surface": seed, "volume": 1e-18 if seed == 2 else 1e-16, "error": 1e-14}
@@ -265,27 +246,6 @@ class TestConverged:
         assert "heights" in wrong(self.NAME, self.rows(**{f"heights_{DEFAULT}": (6.0, SEEDS)}))
         assert "worn" in wrong(self.NAME, self.rows(volume=(0.4, SEEDS)))
         assert wrong(self.NAME, self.rows(error=(1e3, (4,)))) == {"volume"}
-
-    def test_a_surface_is_measured_by_its_worst_shift_and_what_is_varied(self, monkeypatch, tmp_path):
-        """1 % more at each shift, 20 % at one; layers of a third 8 % less, load steps 2 % more."""
-        factors = {m: 1.0 + 0.01 * m.thirds for m in converged.members()}
-        factors[Member(1, DEFAULT, 2)] = 1.2
-        factors |= {converged.VARIATIONS["layers"](seed): 0.92 for seed in SEEDS}
-        factors |= {converged.VARIATIONS["steps"](seed): 1.02 for seed in SEEDS}
-        volumes = {member.label: 1e-16 * factor for member, factor in factors.items()}
-        here = context(self.NAME, tmp_path)
-        here.solve = lambda model, scene, label: result_of(
-            history(np.full(5, volumes[label]), cycles=np.arange(1, 6))
-        )
-        monkeypatch.setattr(Member, "of", lambda *_: None)
-        monkeypatch.setattr(converged, "lowering", lambda result: np.ones((COARSEST, COARSEST)))
-        first, second, *_ = converged.surfaces(here)
-        assert first[f"off-{DEFAULT}"] == pytest.approx(0.2) and second[f"off-{DEFAULT}"] == pytest.approx(
-            0.02
-        )
-        assert first["layers"] == pytest.approx(0.04) and first["steps"] == pytest.approx(0.03)
-        assert first[f"heights-{DEFAULT}"] == 0.0
-        assert list(findings(converged.cells(None, pd.DataFrame([first, second])).drawing.figure)) == []
 
     def test_a_surface_is_shifted_against_the_cells_exactly(self):
         """By a whole cell the same heights are one cell further, and fine cells hold those of coarse ones."""
@@ -334,50 +294,6 @@ class TestKinematic:
         assert rows[0]["late over early"] == pytest.approx(0.5)
         worse = self.rows(fit=0.01, first=1.2e-3, converged=False)
         assert wrong(name, worse) == {"fit", "first-loading", "converged"}
-
-
-class TestWay:
-    NAME = "running-in-way"
-
-    def rows(self, **changed) -> list[dict]:
-        """Three passes that remove 6 m3 in all, on cells of 1 by 2 m; changed: of what they say."""
-        scene = SCENES[B]
-        loading = scene.loading.model_copy(update={"cycles": 3})
-        grid = scene.grid.model_copy(update={"cells": (2, 2), "extent": (4.0, 2.0)})
-        scene = scene.model_copy(update={"loading": loading, "grid": grid})
-        table = {name: [0.2] * 3 for name in way.COLUMNS} | {"pass": [1, 2, 3]}
-        table |= {"wear_of_pass_m3": [3.0, 2.0, 1.0]} | changed
-        surface = {"state": ["peak", "unloaded", "unloaded"], "worn_m": [9.0, 2.0, 1.0]}
-        steps = {"step": list(range(10))}
-        moving = Made(tables={"history": steps, "passes": table, "surface": surface})
-        results = [
-            replace(
-                moving, cost={"operator_applications": changed.get(name, 30)}, converged=name not in changed
-            )
-            for name in ("moving", "rest")
-        ]
-        rows = [{"run": "on-a-way"} | way.cost(results[0]) | way.on_way(scene, *results)]
-        rows[0] |= {"resumed": 0, "growth": 0.0, "unconverged": int(changed.get("lost", 0))}
-        return [*rows, {"run": "at-rest"} | way.cost(results[1]) | {"unconverged": 0}]
-
-    def test_right_numbers_hold_and_wrong_ones_turn_red(self):
-        assert wrong(self.NAME, self.rows(rest=20)) == set()
-        worse = {"moving": 61, "lost": 1, "friction_mean": [0.2, 0.41, 0.2]}
-        worse |= {"protected_mean": [0.1, np.nan, 0.1], "wear_of_pass_m3": [3.0, 2.0, 1.1]}
-        found = wrong(self.NAME, self.rows(**worse))
-        assert found == {"unconverged", "increments", "missing", "volume", "friction-range"}
-
-
-class TestWear:
-    def test_asymmetry_is_noticed(self):
-        x = np.arange(-4, 5)
-        scar = np.maximum(0.0, 9.0 - x[:, None] ** 2 - x**2)
-        turned = scar.copy()
-        turned[4, 3] += 1e-9
-        assert wear.asymmetry(scar) == 0.0 and wear.asymmetry(turned) > 1e-11
-        assert np.isnan(wear.asymmetry(0.0 * scar))
-        flattened = np.maximum(0.0, 9.0 - 1.001 * x[:, None] ** 2 - x**2)
-        assert wear.asymmetry(flattened) == 0.0 and wear.asymmetry(flattened, turned=True) > 1e-4
 
 
 class TestFem:

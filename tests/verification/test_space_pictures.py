@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures in space: which run has which, what they show in numbers, and drawing, where a machine can and
-where it cannot.
-"""
+"""Pictures in space: which run has which, what they show in numbers, and where a machine cannot draw."""
 
 import re
 import subprocess
@@ -142,18 +140,11 @@ class TestCommand:
     @pytest.mark.usefixtures("cannot")
     def test_solving_keeps_the_other_figures_where_space_cannot_be_drawn(self, sphere_folder, samfem):
         shown = samfem("solve", "sphere.toml", "--figures")
-        of_model, *_, of_pictures = shown.err.splitlines()  # between them progress, where it takes a second
-        assert "half-space" in of_model and offscreen.INSTALL in of_pictures and "SIGSEGV" in of_pictures
+        *others, of_pictures = shown.err.splitlines()  # with progress, where it takes a second
+        assert any("half-space" in line for line in others)
+        assert offscreen.INSTALL in of_pictures and "SIGSEGV" in of_pictures
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
-
-    @pytest.mark.usefixtures("cannot")
-    def test_view_says_that_it_cannot_and_writes_nothing(self, samfem):
-        folder = found("elastic").run.folder
-        before = set(folder.rglob("*"))
-        shown = samfem("view", str(folder), code=1)
-        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
-        assert set(folder.rglob("*")) == before
 
     @pytest.mark.parametrize(
         ("words", "said"),
@@ -177,15 +168,6 @@ class TestCommand:
             monkeypatch.setitem(sys.modules, name, None)
         shown = samfem("view", str(found("elastic").run.folder), "--html", str(tmp_path / "a.html"), code=2)
         assert "trame_pyvista, nest_asyncio2: pip install 'samfem[html]'" in shown.err
-
-    def test_a_page_holds_the_scene_with_title_and_colour_bar(self, tmp_path, samfem, monkeypatch):
-        monkeypatch.delenv(offscreen.WINDOW, raising=False)
-        pytest.importorskip("trame_pyvista", reason="pip install 'samfem[html]'")
-        out = tmp_path / "a.html"
-        samfem("view", str(found("yielding").run.folder), "--html", str(out))
-        text = out.read_text()
-        assert "<title>Plastic zone at the peak load, cut at y = 0</title>" in text and "<svg" in text
-        assert len(text) > 1e6 and "</html>" in text
 
 
 @pytest.fixture(scope="session")
@@ -211,8 +193,9 @@ class TestDrawn:
         assert {path.name for path in (folder / "figures").iterdir()} == names
         assert sorted(shown.out.split()) == sorted(str(folder / "figures" / name) for name in names)
         for name in names:
-            pixels = np.asarray(Image.open(folder / "figures" / name).convert("RGB"))
-            assert pixels.shape[1] > 1000 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 200
+            drawn = Image.open(folder / "figures" / name).convert("RGB")
+            assert drawn.width > 1000 and len(drawn.getcolors()) > 200
+            pixels = np.asarray(drawn)
             edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
             assert (edge == 255).all()  # nothing is cut off
         samfem("view", str(folder), "--picture", "worn", "--out", str(tmp_path / "a.png"))

@@ -13,13 +13,10 @@ from made_results import red
 
 from sam.scene import Status
 from verification.cases.robustness.stability import CASES, Matrix
-from verification.reference.coated_sphere import thin_layer
 from verification.reference.hertz import CircularContact
-from verification.references import layers_of
 from verification.robustness.matrix.checks import Bench, Trial, check_of
 from verification.robustness.matrix.rows import (
     ABSENT,
-    ERROR,
     RIGHT,
     WRONG,
     Cell,
@@ -29,18 +26,9 @@ from verification.robustness.matrix.rows import (
     table,
     topics,
 )
-from verification.robustness.matrix.scenes import (
-    HERTZ,
-    PATCH,
-    RADIUS as SPHERE,
-    SIDE,
-    heights,
-    other,
-    scene_with,
-    wide,
-)
+from verification.robustness.matrix.scenes import SIDE, scene_with
 from verification.runs import models
-from verification.runs.models import FEM, FEM_3D, SAM
+from verification.runs.models import FEM, SAM
 
 (CASE,) = CASES
 
@@ -50,19 +38,6 @@ EVERY = tuple(ROWS.values())
 
 def red_of(rows, judged, level="quick") -> set[str]:
     return red("stability", CASE.values(Matrix(rows, judged, level)), whole=True)
-
-
-def judged(*names):
-    """(rows, their cells)."""
-    rows, bench = [ROWS[name] for name in names], Bench()
-    return rows, {row.name: {model: judge(row, model, bench) for model in row.expected} for row in rows}
-
-
-@pytest.fixture(scope="module")
-def some():
-    return judged(
-        "poisson-0", "poisson-0.5", "force-1e-15", "force-0", "one-cell", "coarse-mesh", "radii-1e5", "nan"
-    )
 
 
 def test_rows_are_complete():
@@ -76,16 +51,6 @@ def test_rows_are_complete():
     for said in (said for kind, _, *checks in expectations if kind == "right" for said in checks):
         assert check_of(table()["checks"].get(said, said) if isinstance(said, str) else said)
     assert {row.name for row in all_rows("quick")} < set(ROWS)
-
-
-def test_right_cells_and_expected_errors_hold_every_gate(some):
-    rows, cells = some
-    kinds = {name: {model: cell.kind for model, cell in row.items()} for name, row in cells.items()}
-    assert kinds["poisson-0"] == kinds["force-1e-15"] == {SAM: RIGHT, FEM: RIGHT}
-    assert kinds["poisson-0.5"] == {SAM: RIGHT, FEM: ERROR, FEM_3D: ERROR}
-    assert kinds["one-cell"] == {SAM: ERROR, FEM: ABSENT} and red_of(rows, cells) == set()
-    tables = CASE.tables(Matrix(rows, cells))
-    assert [len(table.rows) for table in tables] == [len(rows), 8, 9]  # matrix, right cells, errors
 
 
 def times(quantity: str, factor: float):
@@ -132,28 +97,6 @@ def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, 
     assert cell.kind == WRONG and said in cell.text
     rest = {other: Cell(RIGHT) for other in row.expected}
     assert "wrong" in red_of([row], {name: rest | {model: cell}})
-
-
-@pytest.mark.parametrize("apart, kind", [(0.0, RIGHT), (0.05, RIGHT), (0.2, WRONG)])
-def test_a_value_is_compared_within_the_refinement_uncertainty_of_both(monkeypatch, apart, kind):
-    """SAM converges to 1, FEM to 1 + apart, at first order; each errs by 4 % on the cells of the row."""
-
-    def first_order(scene, model):
-        cells = scene.grid.cells[0] if model == SAM else scene.fem.cells_per_radius
-        value = (1.0 if model == SAM else 1.0 + apart) * (1.0 + 0.04 * (33 if model == SAM else 24) / cells)
-        fine = {"cells": [33, 33], "cell_m": [1e-6, 1e-6]}
-        return SimpleNamespace(converged=True, quantities={"peeq_max": value}, discretisation=fine)
-
-    monkeypatch.setattr(models, "solve", first_order)
-    row = replace(
-        ROWS["perfect-7.5-chosen-grid"],
-        changes={"grid.cells": (33, 33), "fem.cells_per_radius": 24},
-        expected={SAM: ["right", "", ["refinement", "peeq_max"]]},
-    )
-    cell = judge(row, SAM, Bench())
-    assert cell.kind == kind, cell.text
-    uncertainties = 2 * 0.04 * (33 / 23 - 1) + 2 * 0.04 * (24 / 16 - 1) * (1 + apart)
-    assert cell.deviations[0].error == pytest.approx(apart * 1.04 / uncertainties)
 
 
 # --- checks, of made results ---
@@ -227,89 +170,6 @@ def test_a_check_tells_right_from_wrong(said, given, right, wrong):
     assert (
         worst(said, given, {"quantities": {}} | right) <= 1 < worst(said, given, {"quantities": {}} | wrong)
     )
-
-
-def test_a_thin_film_is_squeezed_as_its_closed_form():
-    """The contact radius at which its force is that of the scene."""
-    thin = scene_with({"body.coating": {"thickness": 1e-8, "young": 1e6, "poisson": 0.2}, "grid": "none"})
-    largest, force = thin_layer(layers_of(thin), SPHERE, 2e-6)
-    thin = other(thin, {"loading.force": force})
-    said = ["thin film", {"p_center_Pa": 1e-9, "approach_m": 1e-9}]
-    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2e-12 / SPHERE)) <= 1
-    assert worst(said, thin, of(p_center_Pa=largest, approach_m=2.001e-12 / SPHERE)) > 1
-
-
-@pytest.mark.parametrize("power", [1, 2])
-def test_a_linear_problem_has_equal_increments(power):
-    def twin(scene, _):
-        return of(approach_m=scene.loading.force**power)
-
-    def result(apart):
-        return {"discretisation": {"contact_cells": PATCH**2 - apart}} | of(approach_m=0.65**power)
-
-    assert (worst("all-touch", scene(), result(0), twin) <= 1) == (power == 1)
-    assert worst("all-touch", scene(), result(1), twin) > 1
-
-
-@pytest.mark.parametrize(("target", "model", "force"), [({"loading.force": 2.0}, SAM, 2.0), (FEM, FEM, 0.65)])
-def test_another_scene_or_model_is_asked_for(target, model, force):
-    asked = []
-
-    def twin(scene, model):
-        asked.append((model, scene.loading.force))
-        return of(p_max_Pa=2.0)
-
-    found = [worst([target, {"p_max_Pa": 0.1}], scene(), of(p_max_Pa=p), twin) for p in (2.1, 2.3)]
-    assert asked == 2 * [(model, force)] and found == pytest.approx([0.5, 1.5])
-
-
-ROUGH = scene_with(
-    {"counterbody": {"shape": "flat"}, "grid": "none", "surface": {"kind": "file", "path": "wave"}}
-)
-
-
-@pytest.mark.parametrize(
-    ("said", "twin"),
-    [
-        ("mirrored", heights("wave").values[::-1]),
-        (["patch", "strip"], heights("strip").values),
-        (["sum", "half"], heights("half").values),
-    ],
-)
-def test_a_twin_has_the_same_contact(said, twin):
-    def pressed(scene, _=None, more=0.0):
-        fields = SimpleNamespace(cell_data={"p_Pa": np.array([0.0, 1.0 + more, np.nan])})
-        return of(approach_m=1.0) | {"fields": fields}
-
-    def same(scene, _):
-        np.testing.assert_array_equal(scene.surface.path.values, twin)
-        return pressed(scene)
-
-    assert (
-        worst(said, ROUGH, pressed(ROUGH), same) == 0
-        and worst(said, ROUGH, pressed(ROUGH, more=1e-5), same) > 1
-    )
-
-
-def test_layers_grow_below_the_first():
-    found = wide(4.0, 8, 2.0, even=2)
-    assert found["cells"] == (8, 8) and found["extent"] == (4 * HERTZ, 4 * HERTZ)
-    assert np.divide(found["depths"], HERTZ / 2) == pytest.approx([0, 1, 2, 3.2, 4.64])
-
-
-def test_a_check_that_compares_nothing_is_wrong():
-    empty = replace(ROWS["poisson-0"], expected={SAM: ["right", "no reason"]})
-    assert judge(empty, SAM, Bench()).text == "nothing was compared"
-
-
-def test_a_cell_without_verdict_a_kind_without_row_and_an_error_without_reason_turn_red(some):
-    rows, cells = some
-    assert red_of(rows, {**cells, "poisson-0": {SAM: cells["poisson-0"][SAM]}}) == {"rows"}
-    assert red_of(rows, cells, "full") == {"topics-missing"}
-    row, own = ROWS["poisson-0.5"], cells["poisson-0.5"]
-    bare = replace(row, expected={**row.expected, FEM: ["error", "", "unsolved", "poisson"]})
-    assert red_of([bare], {row.name: own}) == {"errors-explained"}
-    assert red_of([row], {row.name: own | {FEM: Cell(ERROR)}}) == {"errors-explained"}
 
 
 def test_an_absent_cell_is_not_solved(monkeypatch):

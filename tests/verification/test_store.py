@@ -12,24 +12,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import PERFECT, SPHERE, STEEL, scene_text, yielding
+from builders import PERFECT, SPHERE, STEEL, scene_text
 from stored import BOTH, COARSE, flipped, same
 
-from sam.plasticity.spectra import spectra_of
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
-from verification.runs.archive import DIGEST, read_archive, write_archive
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
-from verification.runs.files import FolderError, json_text, write_run
-from verification.runs.store import (
-    FOLDER,
-    LIMIT,
-    Store,
-    default_store,
-    identity,
-    kept_coefficients,
-    solve_or_reuse,
-)
+from verification.runs.files import json_text, write_run
+from verification.runs.store import FOLDER, Store, default_store, identity, solve_or_reuse
 
 # what is stored
 
@@ -224,51 +214,11 @@ def test_no_flipped_byte_and_no_shortened_file_gives_another_result(kept, coarse
         assert found.result is None and found.note.startswith("damaged: ") and str(path) in found.note
 
 
-def test_a_damaged_entry_is_solved_again(kept, counted):
-    for entry in kept.entries():
-        flipped(entry.path, entry.size // 2)
-    assert [entry.state for entry in kept.entries()] == ["damaged", "damaged"]
-    _, reuse = solve_or_reuse(kept, COARSE, models.SAM)
-    assert counted == [models.SAM] and reuse.text.startswith("damaged: ")
-    assert reuse.text.endswith(": computed again")
-    assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
-
-
 def test_an_entry_under_another_name_is_damage(kept):
     (sam,), (fem,) = ([entry.path for entry in kept.entries() if entry.what == model] for model in BOTH)
     shutil.copy(fem, sam)
     assert "holds something else than its name says" in kept.lookup(COARSE, models.SAM).note
     assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
-
-
-@pytest.mark.parametrize(
-    "save, change, words",
-    [
-        (
-            np.savez,
-            lambda inside: inside | {"tables.axis.z_m": inside["tables.axis.z_m"] + 1},
-            "the digest of its content",
-        ),
-        (np.savez, lambda inside: {k: v for k, v in inside.items() if k != DIGEST}, "of an older version"),
-        (np.savez_compressed, lambda inside: inside | {"0": np.zeros(10**6)}, "larger than it is"),
-    ],
-    ids=["other numbers", "no digest", "bomb"],
-)
-def test_right_checksums_of_the_container_are_not_enough(kept, save, change, words):
-    (path,) = [entry.path for entry in kept.entries() if entry.what == models.SAM]
-    with np.load(path) as content:
-        inside = dict(content)
-    save(path, **change(inside))
-    assert words in kept.lookup(COARSE, models.SAM).note
-    assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
-
-
-@pytest.mark.parametrize("content", [3, {"Outcome": []}])
-def test_an_entry_with_other_content_is_damage(kept, content):
-    (path,) = [entry.path for entry in kept.entries() if entry.what == models.SAM]
-    inside, values = read_archive(path)
-    write_archive(path, inside, values | {"content": content})
-    assert kept.lookup(COARSE, models.SAM).note.startswith("damaged: ")
 
 
 # faults and company
@@ -294,55 +244,9 @@ def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
     assert own.entries() == [] and own.left_over() == []
 
 
-def _keep_and_look(folder: Path, result, turns: int) -> None:
-    own = Store(folder)
-    for _ in range(turns):
-        own.keep(COARSE, models.SAM, result)
-        if own.lookup(COARSE, models.SAM).result is None:
-            os._exit(3)
-
-
-def test_processes_that_keep_the_same_key_all_succeed(tmp_path, coarse_results):
-    fork = multiprocessing.get_context("fork")
-    crowd = [
-        fork.Process(target=_keep_and_look, args=(tmp_path, coarse_results[models.SAM], 8)) for _ in range(3)
-    ]
-    for process in crowd:
-        process.start()
-    for process in crowd:
-        process.join(20)
-    assert [process.exitcode for process in crowd] == [0, 0, 0]
-    assert [entry.state for entry in Store(tmp_path).entries()] == ["current"]
-    assert len(list(tmp_path.iterdir())) == 1
-
-
 def _keep_and_die(folder: Path, result) -> None:
     os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)
     Store(folder).keep(COARSE, models.SAM, result)
-
-
-def test_coefficients_are_kept_in_the_store_where_they_are_asked_for(tmp_path, monkeypatch):
-    """Beside the results; removed with everything; a limit that is no number is named."""
-    monkeypatch.setenv(FOLDER, str(tmp_path))
-
-    def solved():
-        with kept_coefficients():
-            return replace(models.solve(yielding(3.0, grid={"cells": (15, 15)}), "sam"), cost={})
-
-    monkeypatch.setenv(LIMIT, "0")
-    spectra_of.cache_clear()
-    made = solved()
-    assert not Store(tmp_path).coefficients()
-    monkeypatch.delenv(LIMIT)
-    for _ in range(2):
-        spectra_of.cache_clear()
-        assert same(made, solved())
-    files = Store(tmp_path).coefficients()
-    assert not list(Store(tmp_path).prune(lambda _: True))
-    assert len(list(Store(tmp_path).prune(lambda _: True, coefficients=True))) == len(files)
-    monkeypatch.setenv(LIMIT, "2 GB")
-    with pytest.raises(FolderError, match="SAMFEM_COEFFICIENTS = 2 GB"):
-        kept_coefficients()
 
 
 def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, coarse_results):

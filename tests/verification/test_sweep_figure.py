@@ -44,9 +44,7 @@ def test_a_grid_of_two_numbers_is_a_map(tmp_path):
 
 
 def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(tmp_path):
-    """Of a made result of which the last point has none; plastic strain has a row of panels if there is
-    any.
-    """
+    """Of a made result of which the last point has none; strain has panels if there is any."""
     (tmp_path / "sphere.toml").write_text(scene_text())
     (tmp_path / "study.toml").write_text(STUDY)
     content, rows = read_study(tmp_path / "study.toml"), []

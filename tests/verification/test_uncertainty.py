@@ -11,10 +11,8 @@ from builders import PERFECT, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
-from samfem import read as samfem_read
 from samfem.compared import Uncertain
 from samfem.comparison_page import _uncertainties
-from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -301,32 +299,6 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
     assert values and {name: found[name]["values"][-1] for name in values} == values
 
 
-def test_the_plan_says_what_is_solved_besides():
-    asked, plain = (Scene(**FINER | {"solver": {"uncertainty": each}}) for each in (True, False))
-    with_it, without = (plan(scene).content["models"][0] for scene in (asked, plain))
-    (stage,) = (each for each in with_it["stages"] if each["stage"] == "uncertainty")
-    assert stage["size"] == {"solves": 2} and "27 cells" in stage["reason"]
-    assert with_it["estimate"]["time_s"] > without["estimate"]["time_s"] and not plan(asked).warnings
-
-
-@pytest.mark.parametrize(
-    "model, change, enough",
-    [
-        (SAM, {"grid": {"cells": (31, 31)}}, "grid.cells to [37, 37]"),
-        (SAM, {"grid": {"cells": (32, 40)}}, "grid.cells to [34, 44]"),
-        (FEM, {"fem": {"cells_per_radius": 6}}, "fem.cells_per_radius to 8"),
-    ],
-)
-def test_what_leaves_enough_cells_to_the_coarsest_is_told_before(model, change, enough):
-    (warning,) = (
-        each for each in plan(Scene(**FINER | change), model).warnings if each.startswith(f"{model}: no")
-    )
-    assert warning.endswith(f"4 needed: raise {enough}")
-    key, words = enough.split(" to ")
-    section, name = key.split(".")
-    assert not plan(Scene(**FINER | {section: {name: json.loads(words)}}), model).warnings
-
-
 # the command
 
 
@@ -351,13 +323,6 @@ def test_the_command_prints_and_writes_it(sphere, samfem):
     again = read_run(sphere / "plain")
     assert again.quantities == plain and again.uncertainty is None and "quantities" not in again.tables
     assert not (sphere / "sphere-sam" / "members").exists()
-
-
-def test_no_uncertainty_at_all_is_an_error_that_says_what_to_change(sphere, samfem):
-    (sphere / "sphere.toml").write_text(TEXT.replace("37, 37", "33, 33"))
-    said = samfem("solve", "sphere.toml", "--uncertainty", code=1)
-    assert "sam: no uncertainty of any quantity: the coarsest grid is under-resolved: 15 cells" in said.err
-    assert said.err.endswith("raise grid.cells to [37, 37]\n") and "+-" not in said.out
 
 
 def test_resume_begins_with_the_first_solve_that_is_not_finished(sphere, samfem, monkeypatch):
@@ -406,18 +371,6 @@ def test_a_sweep_refuses_it(sphere, refused):
         'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
     )
     assert "solver.uncertainty = true: not in a sweep" in refused("sweep", "study.toml")
-
-
-def test_a_comparison_says_whether_the_models_agree_within_their_uncertainties(sphere, samfem):
-    """Hertz: both are right, so that what is left is within."""
-    (sphere / "sphere.toml").write_text(f"{TEXT}[solver]\nuncertainty = true\n[fem]\ncells_per_radius = 9\n")
-    said = samfem("compare", "sphere.toml", "--tolerance", "p_Pa over the contact=9 %").out
-    table = samfem_read(sphere / "sphere-compare").frame.set_index("quantity")
-    known = table[table.u_num.notna()]
-    assert {"approach_m", "p_max_Pa"} <= set(known.index) and known.within_u_num.astype(bool).all()
-    runs = [read_run(sphere / "sphere-compare" / part).uncertainty for part in ("sam", "fem")]
-    assert known.u_num["p_max_Pa"] == sum(run["p_max_Pa"]["u_num"] for run in runs)
-    assert f"{len(known)} of {len(known)} within their numerical uncertainties" in said
 
 
 def test_a_difference_beyond_both_uncertainties_is_seen():
