@@ -142,7 +142,7 @@ def recovered(context: Context) -> Iterator[dict[str, Any]]:
             yield {"sweep": "recovered", "law": name, "noise": noise} | dict(
                 zip(names, map(float, shown), strict=True)
             )
-    yield {"sweep": "finite", "law": "swift", "curve-error": of_finite_strain()}
+    yield {"sweep": "finite", "law": "swift", "curve-bias": of_finite_strain()}
 
 
 def of_finite_strain() -> float:
