@@ -217,7 +217,9 @@ class _Search:
         for _ in range(ROUNDS):
             before, jacobian = x, jacobian * self.estimate(x)[:, None]
             x, jacobian, found = self.best(x, bounds, jacobian, LATER)
-            if found and (np.abs(x - before) <= SETTLED * np.sqrt(np.diag(self.of_noise(jacobian)))).all():
+            moved = np.abs(x - before)
+            tried = found or moved.any()  # else every step was refused
+            if tried and (moved <= SETTLED * np.sqrt(np.diag(self.of_noise(jacobian)))).all():
                 return x, jacobian, True
         return x, jacobian, False
 
