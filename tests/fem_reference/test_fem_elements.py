@@ -9,7 +9,6 @@ from skfem import Basis, BilinearForm, ElementHex1, ElementVector, MeshHex, Mesh
 from skfem.helpers import ddot, sym_grad
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
 from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
@@ -17,6 +16,7 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, PlaneSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
@@ -74,16 +74,23 @@ def test_patch_of_rings_is_exact_under_uniform_strain(poisson):
     assert np.abs(force - solid.stiffness @ u).max() < 1e-13 * np.abs(force).max()
 
 
-def test_patch_of_hexahedra_is_exact_under_uniform_strain():
-    solid = cube(3)
+SECTION = PlaneSolid(ring(4).basis.mesh, Elastic(YOUNG, POISSON))
+
+
+@pytest.mark.parametrize("solid", [cube(3), SECTION], ids=["hexahedra", "plane strain"])
+def test_patch_is_exact_under_uniform_strain(solid):
     gradient = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.25, 0.6, 0.8]])
-    exact = np.zeros(solid.size)
-    exact[solid.basis.nodal_dofs] = gradient @ solid.basis.mesh.p
+    axes = (0, 2) if solid is SECTION else (0, 1, 2)
+    exact, places = np.zeros(solid.size), solid.basis.doflocs
+    for k, row in enumerate(axes):
+        dofs = solid.basis.get_dofs(elements=True).all(f"u^{k + 1}")
+        exact[dofs] = gradient[row, axes] @ places[:, dofs]
     u = solved_from_boundary(solid, exact)
     assert np.abs(u - exact).max() < 1e-13
-    e = 0.5 * (gradient + gradient.T)
-    strain = np.array([e[0, 0], e[1, 1], e[2, 2], 2 * e[1, 2], 2 * e[0, 2], 2 * e[0, 1]])
-    expected = stiffness_tensor(YOUNG, POISSON, 3) @ strain
+    e = gradient + gradient.T
+    strain = np.array([*np.diag(e) / 2, e[1, 2], e[0, 2], e[0, 1]])
+    strain = strain[[0, 1, 2, 4]] * [1, 0, 1, 1] if solid is SECTION else strain
+    expected = stiffness_tensor(YOUNG, POISSON, len(strain) - 3) @ strain
     assert np.abs(solid.stress(u) - expected[:, None, None]).max() < 1e-11 * np.abs(expected).max()
     assert np.abs(solid.internal_force(solid.stress(u)) - solid.stiffness @ u).max() < 1e-12
 
@@ -165,7 +172,7 @@ def test_mesh_lines(lines, cells, box):
         h = np.diff(x)
         assert (h > 0.0).all() and (h[1:] / h[:-1])[x[2:] > 1.0 + 1e-9].max() < 2.0
     assert np.abs(r - 1.0).min() < 1e-14
-    mesh = half_plane(r, z)
+    mesh = tensor_mesh(r, z, half=True)
     sizes = {name: facets.size for name, facets in mesh.boundaries.items()}
     assert sizes == {"axis": z.size - 1, "surface": r.size - 1, "far": r.size + z.size - 2}
 

@@ -12,7 +12,7 @@ import fem_reference
 from fem_reference.axisymmetric.model import Model, build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.solution import METHOD as AXISYMMETRIC
-from fem_reference.common import loading, solution
+from fem_reference.common import loading
 from fem_reference.common.loading import Step, run
 from fem_reference.common.schedule import Load
 from fem_reference.spatial.solution import METHOD as SPATIAL
@@ -149,10 +149,6 @@ KINDS = {
 }
 
 
-def solve(method, a_scene):
-    return solution.solve(method, a_scene, progress=None, checkpoint=None, start=None)
-
-
 def fed(method, a_scene, result):
     """The result of the approaches of a result in place of its forces, at every step to a peak."""
     history = result.tables["history"]
@@ -170,7 +166,7 @@ def fed(method, a_scene, result):
         bare = None if plan.bare is None else with_approaches(plan.bare)
         return replace(plan, schedule=schedule, bare=bare)
 
-    return solve(replace(method, plan=lambda its: with_approaches(method.plan(its))), a_scene)
+    return replace(method, plan=lambda its: with_approaches(method.plan(its))).solve(a_scene)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -178,7 +174,7 @@ def test_the_approaches_of_a_force_run_return_its_forces(kind):
     """In every step, to ten times the tolerance of the solver; the rest of the record with them."""
     method, tables = KINDS[kind]
     a_scene = small_scene(**tables)
-    by_force = solve(method, a_scene)
+    by_force = method.solve(a_scene)
     by_approach, near = fed(method, a_scene, by_force), 10 * a_scene.solver.tolerance
     assert by_force.status is by_approach.status
     forces, again = (np.array(of.tables["history"]["force_N"]) for of in (by_force, by_approach))
@@ -193,15 +189,15 @@ def test_a_scene_gives_the_approach(kind):
     """It is that of the result, of a mesh that is planned with an estimate of the force."""
     method, tables = KINDS[kind]
     given = tables["loading"] | {"force": None, "approach": 0.3e-6, "cycles": 1}
-    assert solve(method, small_scene(**tables | {"loading": given})).quantities[
-        "approach_m"
-    ] == pytest.approx(0.3e-6, rel=1e-12)
+    assert method.solve(small_scene(**tables | {"loading": given})).quantities["approach_m"] == pytest.approx(
+        0.3e-6, rel=1e-12
+    )
 
 
 def dented(fem, approach, steps):
     """Perfect plasticity, two cycles to an approach: the second begins above the dent of the first."""
     given = {"force": None, "approach": approach, "steps": steps, "unload": True, "cycles": 2}
-    result = solve(AXISYMMETRIC, small_scene(fem=fem, body={"plasticity": PERFECT}, loading=given))
+    result = AXISYMMETRIC.solve(small_scene(fem=fem, body={"plasticity": PERFECT}, loading=given))
     assert result.status is Status.CONVERGED
     return result.tables["history"]
 

@@ -13,13 +13,7 @@ from sam.contact.normal import Search, solve_contact
 from sam.contact.periodic import PeriodicHalfSpaces
 from sam.grid.cells import Window
 from sam.grid.rough import step_across, tapered
-from sam.kernels.patches import (
-    STRESS,
-    Cuboids,
-    Lags,
-    displacement_coefficients,
-    stress_coefficients,
-)
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.kernels.waves import in_cells, load_waves
 from sam.plasticity.images import PeriodImages
 from sam.plasticity.spectra import BoxOperator, PeriodicOperator

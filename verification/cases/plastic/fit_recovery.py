@@ -309,7 +309,7 @@ def further(context: Context) -> Iterator[dict[str, Any]]:
             law = replace(law, tests=[*law.tests, (found.further[0].radius, found.further[0].force)])
 
 
-def really(context: Context) -> Iterator[dict[str, Any]]:
+def runs(context: Context) -> Iterator[dict[str, Any]]:
     """Rows of fits that are solved: two draws of each law at 1 % of noise, and the two above."""
     for name in LAWS:
         draws = np.random.default_rng(SEED)
