@@ -257,11 +257,14 @@ def solved(
     """Strain, a/R and the depths of the tests, solved; shape: depths that may be of such tests."""
     model, fine = GRIDS[grid]
     tests, solves = law.definition(shape, [1e-9] * len(shape), model).tests, Solves(model, store)
-    found = []
+    found: list[list[float]] = []
     for test in tests:
         each = solves(test, values, fine)
-        found += [each.depths] if test.kind == "depth" else [[each.strain, each.ratio], each.depths]
-    return np.concatenate(found).reshape(len(law.tests), -1)
+        if test.kind == "depth":
+            found[-1].insert(2, float(each.depths[0]))
+        else:
+            found.append([each.strain, each.ratio, *each.depths])
+    return np.array(found)
 
 
 def unloaded(context: Context) -> Iterator[dict[str, Any]]:
