@@ -27,9 +27,9 @@ CORE = {
     "sam.scene": "body verdict yield_curve",
     "sam.scene.surface": "counter",
     "sam.tribofilm": "law state",
-    "fem_reference.axisymmetric": "elements misfit problem recovery",
-    "fem_reference.common": "back_stress contact elasticity hertz layered_force plasticity recovery",
-    "fem_reference.spatial": "hexahedra lines problem",
+    "fem_reference.axisymmetric": "misfit problem recovery",
+    "fem_reference.common": "back_stress contact elasticity hertz layered_force plasticity quadrilaterals recovery",
+    "fem_reference.spatial": "hexahedra problem",
     "verification.uncertainty": "rule",
 }
 """The numerical core, package -> modules: every number of it is changed."""
