@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact iteration: one answer from any start, no ping-pong; what linear solves share changes nothing."""
+"""The contact iteration: one answer from any start, no ping-pong; what linear solves share."""
 
 from types import SimpleNamespace
 

@@ -165,13 +165,6 @@ def test_weights_are_those_of_the_least_squares_fit(window, order):
     assert weights(window, order) == pytest.approx(fitted[half:, half:], abs=of_least_squares(basis))
 
 
-@pytest.mark.parametrize("window", [3, 33])
-def test_filter_keeps_the_volume_up_to_the_border(window):
-    """Sums of window^2 products, of moduli below twice the field, and over the cells."""
-    field = np.random.default_rng(1).random((20, 13))  # 33: mirrored more than once
-    assert filtered(field, window, 2).sum() == close(field.sum(), 2 * (window**2 + field.size) * EPS)
-
-
 def test_negative_depths_are_the_volume_that_smoothing_adds():
     """One cell removed: the positive weights of window 5; weights and their sum to 50 EPS."""
     raw = np.zeros((15, 15))

@@ -220,14 +220,6 @@ def test_junit_has_one_testcase_a_gate(tmp_path):
     assert said == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}
 
 
-def test_value_that_is_no_number_is_null_and_an_empty_cell(tmp_path):
-    run(tmp_path / "out", "bad")
-    gate = next(gate for gate in results(tmp_path / "out")["gates"] if gate["id"] == "bad.one")
-    assert gate["value"] is None and gate["error"] is None
-    table = (tmp_path / "out" / "gates.csv").read_text(encoding="utf-8")
-    assert '\nbad.one,bad,"quantity one, FEM",relative,,1.0,,,0.1,failed' in table
-
-
 def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
     out = tmp_path / "out"
     run(out)

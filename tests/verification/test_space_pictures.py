@@ -14,7 +14,6 @@ from PIL import Image
 
 from sam.scene import Scene
 from samfem.cli import PICTURES as NAMES
-from verification import EXTRAS
 from verification.figures.space import CannotDrawError, draw, offscreen
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES, Picture
@@ -105,14 +104,6 @@ def test_without_a_library_nothing_is_started_and_the_packages_are_named(monkeyp
         draw(found("elastic").run.folder)
 
 
-def test_osmesa_is_taken_where_there_is_no_egl(monkeypatch):
-    monkeypatch.delenv(offscreen.WINDOW, raising=False)
-    monkeypatch.setattr(offscreen, "_loads", lambda library: library == "libOSMesa.so.8")
-    assert offscreen.window() == "vtkOSOpenGLRenderWindow"
-    monkeypatch.setenv(offscreen.WINDOW, "vtkXOpenGLRenderWindow")
-    assert offscreen.window() == "vtkXOpenGLRenderWindow"
-
-
 @pytest.mark.parametrize(
     ("program", "longest", "how", "what_to_do"),
     [
@@ -161,12 +152,6 @@ class TestCommand:
         run = str(found("elastic").run.folder)
         shown = samfem("view", *(run if word == "RUN" else word for word in words), code=2)
         assert said in shown.err and list(tmp_path.iterdir()) == []
-
-    def test_a_page_names_the_packages_that_it_needs(self, tmp_path, monkeypatch, samfem):
-        for name in EXTRAS["html"]:
-            monkeypatch.setitem(sys.modules, name, None)
-        shown = samfem("view", str(found("elastic").run.folder), "--html", str(tmp_path / "a.html"), code=2)
-        assert "trame_pyvista, nest_asyncio2: pip install 'samfem[html]'" in shown.err
 
 
 @pytest.fixture(scope="session")

@@ -420,18 +420,3 @@ def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
     workers = SimpleNamespace(_killed=BrokenProcessPool)
     assert Cluster.died(workers, cascaded("lost", Failure("any value")))
     assert not Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))
-
-
-def test_a_cluster_without_workers_is_waited_for_and_said_once(capsys):
-    workers = SimpleNamespace(lost=0, _workers=set(), _told=False)
-    for threads_of, slots, lost, said in (
-        ({"a": 2, "b": 1}, 6, 0, 0),
-        ({"a": 2}, 4, 1, 0),
-        ({}, 1, 2, 1),
-        ({}, 1, 2, 0),
-        ({"c": 1}, 2, 2, 0),
-        ({}, 1, 3, 1),
-    ):
-        workers._client = SimpleNamespace(nthreads=lambda found=threads_of: found)
-        assert (Cluster.slots(workers), workers.lost) == (slots, lost)
-        assert capsys.readouterr().err.count("no workers now") == said
