@@ -35,8 +35,10 @@ from verification.cases.running_in.study import (
     B,
     Run,
     framed,
+    off_campaign,
 )
 from verification.figures.check import findings
+from verification.runs.store import Reuse
 from verification.scenes.asperities import SIDE
 
 OF_THE_LAYER = {"depth", "deviation", "hardening", "layer-limit"}
@@ -186,6 +188,39 @@ class TestReadings:
         name = words.named(words.PRINTED, "roof stays", "fills")
         assert red(self.CASE.name, self.CASE.measure(self.found(name, wrong=1e-9))) == {"balance"}
         assert red(self.CASE.name, self.CASE.measure(self.found(name, excess=1.1e-3))) == {"excess"}
+
+
+class TestCampaign:
+    def test_runs_are_taken_from_it_and_some_are_solved_again_and_held_against_it(
+        self, tmp_path, monkeypatch
+    ):
+        case, friction = all_cases()["running-in-readings"], as_the_paper_says()[A].friction
+        own, solved, off = context(case.name, tmp_path, level="full"), [], [0.0]
+        one = next(iter(case.scenes(own)))[0]
+        wanted = {key: each for key, each in case.scenes(own).items() if key[0] == one and key[2] < 3}
+        monkeypatch.setattr(type(case), "scenes", lambda *_: wanted)
+        monkeypatch.setattr("verification.cases.running_in.study.resources.files", lambda _: tmp_path)
+
+        def solve(model, scene, label, *, demand):
+            solved.append(label)
+            own.sources[label] = Reuse(True, "2026-01-02T03:04", "abcdefgh")
+            return result_of(replace(as_the_paper_says()[A], friction=friction + off[0]))
+
+        monkeypatch.setattr(own, "solve", solve)
+        before = case.runs(own)
+        assert len(solved) == len(before) == 12 and off_campaign(framed(before, PARTS)) == 0.0
+        case.keep(own, tmp_path / f"{case.name}.csv.gz")
+        monkeypatch.delitem(case.__dict__, "campaign")
+        solved.clear()
+        off[0] = 0.03
+        after = framed(case.runs(own), PARTS, case.numbers)
+        assert solved == [wanted[one, A, 2][0]]
+        assert off_campaign(after) == pytest.approx(0.03, rel=1e-4)
+        told = "Taken from a campaign (12 runs, commit abcdefg, 2026-01-02): 11 of 12 runs"
+        assert list(case.told_of_campaign(after)) == [f"{told}; solved again and held against it: 1."]
+        assert list(case.ahead(own)) == [wanted[one, A, 2][1]]
+        kept = after.set_index("material").loc[B, "run"].iloc[0].history
+        np.testing.assert_allclose(kept.volume, as_the_paper_says()[A].volume, rtol=1e-5)
 
 
 class TestConverged:

@@ -139,6 +139,7 @@ CHANGES = (
     (FILM, named(SMALL, *PLAIN), "The film by Eq. 12 to 14 as printed", "physics"),
 )
 """Reading, the one beside it, the one thing that differs, and what kind of thing that is."""
+AGAIN = 2  # the surface whose runs are solved again beside a campaign
 NEAR = 0.1  # of its threshold: how near the median of a measure is that finer cells may decide
 
 
@@ -158,6 +159,10 @@ class RunningInReadings(Readings):
 
     def readings(self, context: Context) -> Mapping[str, Reading]:
         return READINGS
+
+    def solved(self, reading: Any, material: str, surface: int) -> bool:
+        """Again: every reading on a quarter of the area, and a printed material."""
+        return surface == AGAIN and (base_of(reading) != PRINTED or material == A)
 
     def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
         return dict(sorted(super().scenes(context).items(), key=lambda item: item[0][2]))
@@ -182,7 +187,10 @@ class RunningInReadings(Readings):
             if one.scene.solver.method == "paper":
                 excess.append(float(one.of_cycles("yield_excess").max() / one.scene.solver.tolerance))
         lost = 1.0 - float(found["converged"].mean())
-        return {"balance": Measured(max(balance)), "excess": Measured(max(excess)), "lost": Measured(lost)}
+        values = {"balance": max(balance), "excess": max(excess), "lost": lost}
+        return {name: Measured(value) for name, value in values.items()} | {
+            "campaign": Measured(study.off_campaign(found))
+        }
 
     def judged(self, found: DataFrame) -> dict[str, list[dict[str, Any]]]:
         """Reading -> what is told of SAID."""
@@ -207,6 +215,7 @@ class RunningInReadings(Readings):
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         yield " ".join(changes(self.judged(found)))
+        yield from self.told_of_campaign(found)
         few = found[found["coarse"]].groupby("reading", sort=False).size()
         counts = "; ".join(f"{name}: {count}" for name, count in few.items()) or "none"
         yield f"Runs with too few cells in a contact at the end, judged all the same: {counts}."

@@ -12,9 +12,15 @@ nothing here is a row.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+import gzip
+import hashlib
+import io
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from importlib import resources
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -22,6 +28,7 @@ import numpy as np
 from sam.scene import CounterSurface, Hardening, Plasticity, Result, Scene, Status
 from verification.cases.case import SAM, Case, Context, SmallTable, with_grid, with_keys, with_loading
 from verification.compare.running_in_measures import History, Scar, Spread
+from verification.runs.store import identity, short
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -149,11 +156,15 @@ def hardened(scene: Scene, share: float) -> Scene:
 
 @dataclass(frozen=True)
 class Run:
-    """A scene and its result; again: whether it has deeper layers than were asked for."""
+    """A scene and its result; again: whether it has deeper layers than were asked for; kept: what a campaign
+    has of it; solved: whether the result is not that.
+    """
 
     scene: Scene
     result: Result
     again: bool = False
+    kept: Result | None = None
+    solved: bool = True
 
     @cached_property
     def history(self) -> History:
@@ -248,6 +259,42 @@ def framed(
     return pd.DataFrame(rows, columns=[*parts, "run", "converged", *own])
 
 
+KEPT = """\
+cycle wear_volume_m3 friction_coefficient sa_m protected_fraction p_max_Pa new_strain_max wear_of_cycle_m3
+raw_volume_m3 roof_volume_m3 filled_volume_m3 yield_excess flow_residual peeq_max""".split()
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Runs that take hours, solved once. made: size, commit and date; results: digest of a scene -> its
+    status and the columns KEPT of its cycles, to six digits.
+    """
+
+    made: str = ""
+    results: Mapping[str, Result] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, case: str) -> Campaign:
+        """That of a case, empty where it has none."""
+        import pandas as pd
+
+        packed = resources.files(__package__).joinpath(f"{case}.csv.gz")
+        if not packed.is_file():
+            return cls()
+        lines = gzip.decompress(packed.read_bytes()).decode()
+        made, rows = lines.partition("\n")[0], pd.read_csv(io.StringIO(lines), comment="#")
+        results = {}
+        for digest, own in rows.groupby("scene", sort=False):
+            cycles = own[KEPT].dropna(axis="columns", how="all").to_dict("list")
+            results[str(digest)] = Result(SAM, Status(own["status"].iloc[0]), {}, {"cycles": cycles})
+        return cls(made.removeprefix("# "), results)
+
+
+def digest_of(scene: Scene) -> str:
+    """Of a scene with all its defaults, but without its title."""
+    return hashlib.sha256(json.dumps(identity(scene, SAM), sort_keys=True).encode()).hexdigest()[:16]
+
+
 @dataclass(frozen=True)
 class Reading:
     """How the paper is read. label: in names of runs; change: of the printed scene of a material."""
@@ -274,6 +321,15 @@ class Readings(Case):
         """By their names."""
         raise NotImplementedError(self.name)
 
+    def solved(self, reading: Any, material: str, surface: int) -> bool:
+        """Whether a run is solved even where a campaign has it."""
+        return True
+
+    @cached_property
+    def campaign(self) -> Campaign:
+        """What is taken from it at the full level; it was made by `keep`."""
+        return Campaign.of(self.name)
+
     def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
         """Key -> label and scene of its run."""
         return {
@@ -287,23 +343,69 @@ class Readings(Case):
         return framed(self.runs(context), PARTS, self.numbers)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        return (scene for _, scene in self.scenes(context).values())
+        kept = self.campaign.results
+        for key, (_, scene) in self.scenes(context).items():
+            if not kept or self.solved(*key) or digest_of(scene) not in kept:
+                yield scene
 
     def then(self, scene: Scene, result: Result) -> Scene | None:
         at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
         return deeper(scene) if at_edge and scene.grid.depths[-1] < DEEPER[-1][0] else None
 
-    def runs(self, context: Context) -> dict[tuple, Run]:
-        """What ran, by key."""
-        found = {}
-        for key, (label, scene) in self.scenes(context).items():
-            below: Scene | None = scene
+    def every(self, context: Context, kept: Mapping[str, Result]) -> Iterator[tuple[tuple, str, Run]]:
+        """Key, label and run, those with deeper layers after those that they replace."""
+        for key, (label, first) in self.scenes(context).items():
+            below: Scene | None = first
             while below is not None:
-                own, result = below, context.solve(SAM, below, label, demand=False)
-                below, label = self.then(own, result), f"{label}-deeper"
-            # without the fields, of which all runs have gigabytes: their files have them
-            found[key] = Run(own, replace(result, fields=None, grids={}), own is not scene)
-        return found
+                scene = below
+                old = kept.get(digest_of(scene)) if kept else None
+                now = old is None or self.solved(*key)
+                result = context.solve(SAM, scene, label, demand=False) if now else old
+                # without the fields, of which all runs have gigabytes: their files have them
+                yield (
+                    key,
+                    label,
+                    Run(scene, replace(result, fields=None, grids={}), scene is not first, old, now),
+                )
+                below, label = self.then(scene, result), f"{label}-deeper"
+
+    def runs(self, context: Context) -> dict[tuple, Run]:
+        """What ran, or was kept, by key."""
+        kept = self.campaign.results if context.level == "full" else {}
+        return {key: run for key, _, run in self.every(context, kept)}
+
+    def keep(self, context: Context, path: Path) -> None:
+        """Solve all runs, or take them from the store, and write what a campaign has of them."""
+        import pandas as pd
+
+        rows = []
+        for _, label, one in self.every(context, {}):
+            cycles = {name: one.of_cycles(name) for name in KEPT if name in one.result.tables["cycles"]}
+            who = {"scene": digest_of(one.scene), "run": label, "status": str(one.result.status)}
+            rows.append(pd.DataFrame(who | cycles))
+        last = list(context.sources.values())[-1]
+        made = f"# {len(rows)} runs, {short(last.commit)}, {last.created[:10]}\n"
+        table = pd.concat(rows).reindex(columns=["scene", "run", "status", *KEPT])
+        path.write_bytes(
+            gzip.compress(f"{made}{table.to_csv(index=False, float_format='%.6g')}".encode(), mtime=0)
+        )
+
+    def told_of_campaign(self, found: DataFrame) -> Iterator[str]:
+        """How many runs are from it, and how many of those were solved again."""
+        if not (solved := found["run"].map(lambda one: one.solved)).all():
+            twice = sum(one.solved and one.kept is not None for one in found["run"])
+            yield (
+                f"Taken from a campaign ({self.campaign.made}): {(~solved).sum()} of {len(found)} runs; "
+                f"solved again and held against it: {twice}."
+            )
+
+
+def off_campaign(found: DataFrame) -> float:
+    """Largest difference of the friction in any cycle of runs solved again from those of a campaign."""
+    if all(one.kept is None for one in found["run"]):
+        return 0.0
+    twice = [(one.history, History.of(one.kept.tables)) for one in found["run"] if one.solved and one.kept]
+    return max((outside(one.friction - old.friction, 0.0, 0.0) for one, old in twice), default=NAN)
 
 
 def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:
