@@ -31,7 +31,7 @@ SOFT = Layers(2e9, 0.5, THICKNESS, 210e9, 0.3)
 
 RATIOS = (1e-6, 1e-3, 0.1, 80 / 210, 1.0, 3.0, 1e3, 1e6)
 POISSONS = ((0.0, 0.0), (0.3, 0.3), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0), (0.3, 0.5), (0.5, 0.3), (0.25, 0.45))
-WAVES = 10.0 ** np.arange(-8, 4.1)  # kh, wave number times thickness
+WAVES = 10.0 ** np.arange(-8, 4.1, 2)  # kh, wave number times thickness
 
 # the response to a wave
 

@@ -16,7 +16,7 @@ import fem_reference.spatial
 from fem_reference.common.contact import ended
 from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
-from sam.scene import FrictionMap, Status
+from sam.scene import Status
 from sam.scene.result import stagnates, unfinished
 from verification.cases.case import Context, with_loading
 from verification.cases.certificates import certificates as case
@@ -324,24 +324,6 @@ def test_fields_of_elements_that_are_returned_wrong_are_seen(solve):
     for name in ("stress_Pa", "peeq", "plastic_strain"):
         changed = with_field(result, "cell_data", name, lambda field: 1.0001 * field)
         assert spatial_checks.fields(steps, changed) > LIMITS["fem-3d-fields"]
-
-
-def test_another_coefficient_is_seen(solve):
-    given = solve(*PATCH)[0].friction.path
-    mirrored = {"path": FrictionMap(given.values[:, ::-1], given.extent)}
-    for of, other in ((SLIDING, {"coefficient": 0.2001}), (PATCH, mirrored)):
-        scene, _, records = solve(*of)
-        changed = scene.model_copy(update={"friction": scene.friction.model_copy(update=other)})
-        right, wrong = (spatial_checks.steps_of(each, records)[0].equilibrium() for each in (scene, changed))
-        assert right["friction"] < LIMITS["fem-3d-friction"] < wrong["friction"]
-
-
-def test_a_film_in_three_dimensions(solve):
-    """Elastic: its steps are taken again. With other moduli of the film there is no equilibrium."""
-    scene, *_ = solve("fem-3d", "film, sliding")
-    step = spatial_checks.steps_of(scene, [])[-1]
-    other = spatial_checks.Spatial(with_film(scene, young=1.0001), step.model, step)
-    assert other.equilibrium()["equilibrium"] > LIMITS["fem-3d-equilibrium"]
 
 
 def test_a_film_that_yields(solve):

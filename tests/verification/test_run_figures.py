@@ -177,11 +177,6 @@ MAPS = [(name, *MISES) for name in ("sphere", "punch", "coated", "travelling")] 
 MAPS += [("worn", *PEEQ)]
 
 
-def test_the_displacement_into_the_body_points_down():
-    pressure, displacement, gap = drawn("sphere")["line"].figure.axes
-    assert displacement.yaxis_inverted() and not (pressure.yaxis_inverted() or gap.yaxis_inverted())
-
-
 class TestPlane:
     @pytest.mark.parametrize("name, figure, quantity, unit", MAPS)
     def test_writes_the_largest_value_that_it_draws(self, name, figure, quantity, unit):

@@ -183,10 +183,3 @@ class TestDrawn:
             assert (edge == 255).all()  # nothing is cut off
         samfem("view", str(folder), "--picture", "worn", "--out", str(tmp_path / "a.png"))
         assert (tmp_path / "a.png").read_bytes() == (folder / "figures" / "worn-3d.png").read_bytes()
-
-    def test_a_picture_that_a_run_does_not_have_is_refused(self, tmp_path, samfem):
-        out = tmp_path / "a.png"
-        shown = samfem(
-            "view", str(found("elastic").run.folder), "--picture", "worn", "--out", str(out), code=2
-        )
-        assert "does not have what --picture worn shows" in shown.err and not out.exists()

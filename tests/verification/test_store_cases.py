@@ -175,16 +175,3 @@ def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
     assert solves == {"solved": 0, "reused": 1, "cases": 0, "stale": 1 - damaged, "damaged": damaged}
     assert small.runs == 2 and counted == [models.SAM]
     assert ("small: damaged: " in capsys.readouterr().err) == bool(damaged)
-
-
-def test_a_case_that_broke_off_or_measures_times_is_not_kept(tmp_path, small, counted, monkeypatch):
-    small.problem = "no"
-    report_of(tmp_path, code=1)
-    small.problem = ""
-    alone = FakeCase("small", "Small case", "Does it hold?", alone=True, does=small)
-    monkeypatch.setattr(verify, "all_cases", lambda: {"small": alone})
-    for _ in range(2):
-        report_of(tmp_path)
-    assert small.runs == 3 and counted == [models.SAM]
-    assert verify.main([], "quick", tmp_path / "out") == 0  # without a store every case runs
-    assert small.runs == 4 and counted == [models.SAM] * 2
