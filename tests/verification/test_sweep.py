@@ -6,8 +6,6 @@ import csv
 import importlib
 import json
 import os
-import subprocess
-import sys
 import time
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
@@ -315,45 +313,6 @@ class Neighbours:
 def test_a_neighbour_of_a_deadly_task_is_not_blamed():
     found = outcomes(Neighbours(), functions.double, {k: (k,) for k in range(8)})
     assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
-
-
-def program_with_workers(program: str, *arguments: str) -> subprocess.CompletedProcess:
-    """A program that has to end in half a minute."""
-    tests = Path(__file__).parents[1]
-    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
-    command = [sys.executable, "-c", program, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, env=path, timeout=30)
-
-
-def test_workers_end_when_their_parent_is_killed():
-    program = """
-import os, sys
-from samfem.executors import Processes
-import worker_functions as functions
-if __name__ == "__main__":
-    workers = Processes(1)
-    print(workers.submit(os.getpid).result(), flush=True)
-    workers.submit(functions.sleep, 60)
-    os._exit(9)
-"""
-    done = program_with_workers(program)
-    worker = int(done.stdout)
-    until = time.monotonic() + 10
-    while _is_alive(worker) and time.monotonic() < until:
-        time.sleep(0.02)
-    assert done.returncode == 9 and not _is_alive(worker)
-
-
-def _is_alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    try:
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except OSError:  # gone in between, or a machine without /proc
-        return not Path("/proc/self").exists()
-    return state != "Z"  # nobody may be there to collect it
 
 
 def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
