@@ -137,7 +137,7 @@ KINDS = {
     "sliding": (fem_reference.spatial, {"body": {"plasticity": SWIFT}, "friction": 0.2}),
     "rough": (
         fem_reference.spatial,
-        {"surface": ROUGH | {"seed": 1}, "grid": {"cells": (8, 8), "extent": (1e-5, 1e-5)}},
+        {"surface": WAVE, "grid": {"cells": (8, 8), "extent": (1e-5, 1e-5)}},
     ),
 }
 
