@@ -124,21 +124,11 @@ def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
 # --- given approaches ---
 
 COARSE, CYCLES = {"cells_per_radius": 4, "box": 5}, {"steps": 3, "unload": True, "cycles": 2}
-ROUGH = {
-    "kind": "self-affine",
-    "sq": 20e-9,
-    "hurst": 0.8,
-    "cutoff_long": 2e-5,
-    "cutoff_short": 5e-6,
-    "seed": 1,
-}
+WAVE = {"kind": "self-affine", "sq": 2e-8, "hurst": 0.8, "cutoff_long": 2e-5, "cutoff_short": 5e-6, "seed": 1}
 KINDS = {
     "elastic": (fem_reference, {"counterbody": STEEL, "loading": CYCLES}),
     "sliding": (fem_reference.spatial, {"body": {"plasticity": SWIFT}, "friction": 0.2}),
-    "rough": (
-        fem_reference.spatial,
-        {"surface": WAVE, "grid": {"cells": (8, 8), "extent": (1e-5, 1e-5)}},
-    ),
+    "rough": (fem_reference.spatial, {"surface": WAVE, "grid": {"cells": (8, 8), "extent": (1e-5, 1e-5)}}),
 }
 
 

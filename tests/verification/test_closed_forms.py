@@ -107,10 +107,8 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
     t, w = gauss(60)
     angle = 2 * np.pi * np.arange(16)[:, None] / 16
     alpha = t * np.pi / 2  # r = z tan(alpha) covers the whole plane z = 0.3
-    r, area = (
-        0.3 * np.tan(alpha),
-        0.3**2 * np.tan(alpha) / np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / 16,
-    )
+    r = 0.3 * np.tan(alpha)
+    area = 0.3**2 * np.tan(alpha) / np.cos(alpha) ** 2 * w * np.pi / 2 * 2 * np.pi / 16
     traction = stress(r * np.cos(angle), r * np.sin(angle), 0.3, 7.0, nu=nu)[..., TENSOR[2]]
     resultant = np.einsum("ijk,ij->k", traction, np.broadcast_to(area, traction.shape[:2]))
     np.testing.assert_allclose(resultant, -7.0 * np.eye(3)[axis], rtol=0, atol=1e-12 * 7)
@@ -120,10 +118,8 @@ def test_point_loads_balance_the_force_and_free_the_surface(nu, axis, kind):
 @pytest.mark.parametrize("kind", ["boussinesq", "cerruti"])
 def test_point_displacements_give_the_stresses_by_hooke(kind):
     E, nu = 2.5, 0.3
-    displacement, stress = (
-        getattr(point_loads, f"{kind}_displacement"),
-        getattr(point_loads, f"{kind}_stress"),
-    )
+    displacement = getattr(point_loads, f"{kind}_displacement")
+    stress = getattr(point_loads, f"{kind}_stress")
     for point in (np.array([0.4, -0.3, 0.7]), np.array([0.01, 0.02, 1.0])):
         gradient = np.array(
             [partial(lambda *x: displacement(*x, 3.0, young=E, nu=nu), point, k, 0.005) for k in range(3)]

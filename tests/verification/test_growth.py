@@ -32,9 +32,8 @@ def test_a_power_is_found():
 def test_a_power_needs_three_points_in_its_range():
     assert fit_power(CELLS, CELLS, first=4e3).first == 4e3
     bent = fit_power(CELLS[:3], CELLS[:3] * [1.0, 1.2, 1.0])
-    assert bent.exponent == pytest.approx(1.0) and bent.error == pytest.approx(
-        np.log(1.2) / np.log(4.0) / np.sqrt(3.0)
-    )
+    assert bent.exponent == pytest.approx(1.0)
+    assert bent.error == pytest.approx(np.log(1.2) / np.log(4.0) / np.sqrt(3.0))
     for x, y, first in (
         (CELLS[:2], CELLS[:2], 0),
         (CELLS[[0, 1, 1]], CELLS[:3], 0),
@@ -193,10 +192,8 @@ def test_both_codes_solve_the_published_scene_in_turns_and_a_loss_is_named(tmp_p
     git("commit", "--quiet", "--message", "published")
     cli.write_text(PROGRAM.format(log=str(log), name="new ", memory=125 * 10**6, code=0))
     (root / "verification/scenes/small.toml").write_text("cells = 10\n")
-    head, growing = (
-        git("rev-parse", "HEAD"),
-        {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}},
-    )
+    head = git("rev-parse", "HEAD")
+    growing = {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}}
     broken_off = {"name": "published-code", "tables": [], "reused": None}
     report.write_text(json.dumps({"provenance": {"commit": head}, "cases": [growing, broken_off]}))
     assert published_code.published() == "0" * 40 and "with its history" in published_code.missing()

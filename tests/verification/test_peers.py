@@ -122,12 +122,8 @@ class TestEnvironment:
         monkeypatch.delenv(VARIABLE, raising=False)
         assert main(["peers"], "full", tmp_path / "out") == 0
         said = capsys.readouterr().out
-        assert (
-            said.startswith("peers: not run: ")
-            and VARIABLE in said
-            and "make peers" in said
-            and not (tmp_path / "out").exists()
-        )
+        assert said.startswith("peers: not run: ") and VARIABLE in said and "make peers" in said
+        assert not (tmp_path / "out").exists()
         monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
         assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
 
