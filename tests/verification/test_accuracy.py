@@ -110,14 +110,6 @@ def test_a_grid_that_would_need_too_much_is_not_solved(monkeypatch, memory, long
     assert result.discretisation["cells"][0] == max(int(each.split()[0]) for each in solved)
 
 
-def test_first_grids_that_need_too_much_are_refused(monkeypatch):
-    monkeypatch.setattr(accuracy, "memory_bytes", lambda: 1e8)
-    with pytest.raises(
-        ModelError, match=r"solver.accuracy = 0.05: 4.2 cells .* about .* of memory needed, 100 MB available"
-    ):
-        searched(asked(0.05), lambda scene: made(scene, 1.0, 0.0))
-
-
 def of_elements(scene: Scene) -> Result:
     """Of finite elements in a box that is too small, whatever the elements."""
     pressure = 1 + 1e-2 / scene.fem.cells_per_radius**2 + 2 / scene.fem.box**2

@@ -2,15 +2,12 @@
 """References of the coated half-space, under waves, a sphere, a disc and a traction."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from many_digits import ManyDigits
-from scipy.integrate import quad
-from scipy.special import j1
 
-from verification.reference.burmister import disc_stress, interface_stress
+from verification.reference.burmister import disc_stress
 from verification.reference.coated_changes import (
     film_contact,
     largest_bare_mises,
@@ -170,20 +167,6 @@ def test_largest_von_mises_is_that_of_hertz_and_not_below_a_finer_scan():
     scan = np.max(von_mises(contact.stress(r, z)))
     assert 1 - 1e-6 < found.value / scan < 1 + 2e-3  # the scan's own spacing
     assert film.value > found.value and film.z <= 0.2 <= found.z
-
-
-@pytest.mark.parametrize("young", [10.0, 1000.0])
-def test_pavement_equals_adaptive_quadrature(young):
-    """The same Hankel integral by another rule (QUADPACK, period by period of the Bessel function): 1e-9."""
-    layers = CoatedHalfSpace(young, 0.5, 1.0, 1.0, 0.5)
-
-    def integrand(k):
-        k = np.array([k])
-        return -float(layers.profiles(k, layers.amplitudes(k), 1.0, film=False)[0, 0]) * 2.0 * j1(2.0 * k[0])
-
-    pieces = [0, 1e-3, 1e-2, 0.1, 0.5, 1, 2, 4, 8, 16, 40]
-    total = sum(quad(integrand, a, b, epsabs=1e-11, epsrel=1e-9)[0] for a, b in pairwise(pieces))
-    assert interface_stress(2.0, young) == pytest.approx(total, abs=1e-9)
 
 
 def test_disc_on_one_material_in_closed_form():

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from fake_case import FakeCase
 from matplotlib.ticker import FixedLocator
-from PIL import Image
 
 from samfem.publishing import report
 from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
-from verification.figures.style import BLUE, VERMILION, Drawing, save, sheet
+from verification.figures.style import BLUE, VERMILION, Drawing, sheet
 from verification.suite import verify
 
 X = np.linspace(0.0, 10.0, 21)
@@ -90,18 +89,6 @@ def test_a_map_without_colour_bar_is_found():
     with sheet(4.0, 3.0) as (figure, axis):
         axis.pcolormesh(X, X, np.outer(X, X))
     assert "have no colour bar" in " ".join(findings(figure))
-
-
-def test_figures_are_png_at_200_dots_an_inch_or_pdf_with_its_fonts(tmp_path):
-    with sheet(4.0, 3.0) as (figure, axis):
-        good(figure, axis)
-    drawing = type("Sketch", (), {"figure": figure, "data": {"x": [1.23456789]}})
-    assert {path.suffix for path in save(drawing, tmp_path / "one")} == {".png", ".csv"}
-    picture = Image.open(tmp_path / "one.png")
-    assert picture.size == (800, 600) and picture.mode == "P"
-    assert (tmp_path / "one.csv").read_text().split() == ["x", "1.2346"]
-    assert [path.name for path in save(drawing, tmp_path / "two", pdf=True)] == ["two.pdf"]
-    assert b"/FontFile2" in (tmp_path / "two.pdf").read_bytes()
 
 
 @pytest.mark.parametrize(("draw", "code"), [(lambda figure, axis: None, 0), (touching, 1)])

@@ -81,18 +81,6 @@ def test_back_stresses_count_by_what_they_add_at_one_per_cent():
         assert found == pytest.approx(expected, rel=1e-13)
 
 
-def test_factors_are_found_from_counts():
-    counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
-    measured = [5 * each["a"] + 2 * each["b"] for each in counts]
-    assert growth.fitted(counts, measured, 1.0, {}) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
-    ladders = ("axisymmetric", "axisymmetric, plastic", "axisymmetric, steps")
-    rungs = [rung for name in ladders for rung in growth.FAMILIES[name]()]
-    work = [estimates.counted(rung.scene, FEM) for rung in rungs]
-    taken = [{"model": FEM, "memory": 7.0 * c.bytes["unknowns"], "cpu-s": c.work["factors"]} for c in work]
-    memory, seconds = growth.factors(rungs, taken)
-    assert memory[FEM]["unknowns"] == pytest.approx(7.0) and seconds[FEM]["factors"] == pytest.approx(1.0)
-
-
 def test_every_count_has_a_factor():
     for make in growth.FAMILIES.values():
         for rung in make()[:1]:

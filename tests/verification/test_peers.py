@@ -15,19 +15,13 @@ from verification.cases.case import Context
 from verification.cases.peers import peers
 from verification.judging import evaluate
 from verification.peers import elastic, plastic, problems, running
-from verification.peers.programs import aspher, sam as ours
+from verification.peers.programs import sam as ours
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
 from verification.rows import load_rows
 from verification.suite.verify import main
 
 
 class TestProblems:
-    @pytest.mark.parametrize("n", [64, 65])
-    def test_hertz_has_its_apex_on_a_cell(self, n):
-        contact = problems.elastic(problems.HERTZ, n)
-        assert contact.gap.min() == 0.0 and contact.gap.shape == (n, n)
-        assert contact.cell == pytest.approx(problems.SIDE * problems.A / n, rel=1e-15)
-
     def test_rough_surface_is_one_on_all_grids(self):
         coarse, fine = problems.rough_heights(160), problems.rough_heights(320)
         assert np.allclose(fine[::2, ::2], coarse, rtol=0.0, atol=1e-12)
@@ -52,10 +46,6 @@ class TestProblems:
         summit = -np.add.outer(x**2, x**2) / (2 * free.counterbody.radius)
         assert np.allclose(repeats.surface.path.values, summit, rtol=1e-12, atol=0.0)
         assert (repeats.loading, repeats.body) == (free.loading, free.body)
-
-    @pytest.mark.parametrize(("n", "size"), [(512, 32), (96, 48), (97, 97)])
-    def test_coarsest_grid_of_aspher_divides(self, n, size):
-        assert aspher.coarsest(n, 32) == size
 
 
 def test_cancelled_error_does_not_count():

@@ -3,9 +3,7 @@
 
 import errno
 import json
-import time
 from dataclasses import replace
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -21,8 +19,7 @@ from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
-from verification.suite import forecast, verify
-from verification.suite.forecast import Cost
+from verification.suite import verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -170,21 +167,6 @@ def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys)
     (tmp_path / "file").touch()
     assert main(["verify", "--out", str(tmp_path / "file")]) == 2
     assert "no folder that can be written to" in capsys.readouterr().err
-
-
-def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatch):
-    clock = SimpleNamespace(now=0.0)
-    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
-    ahead = forecast.Forecast({"one": Cost(30.0), "two": Cost(100.0), "three": Cost(10.0)}, began=0.0)
-    assert ahead.left == ", about 2.3 min left"
-    clock.now = 90.0  # at half the pace, as (30 + 90) / (30 + 30)
-    ahead.ended("one")
-    clock.now += 50.0
-    assert ahead.left == ", about 2.8 min left"
-    clock.now += 500.0  # longer than predicted
-    assert ahead.left == ", about 20 s left"
-    unknown = forecast.Forecast({"one": Cost()})
-    assert (unknown.left, unknown.words) == ("", "Time and disk: not known.")
 
 
 def page_of(out, name="other.html"):

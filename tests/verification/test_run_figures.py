@@ -211,9 +211,3 @@ class TestCoated:
             both = known[1:] & known[:-1]
             assert not ((z[:-1] < film * (1 - 1e-9)) & (z[1:] >= film * (1 - 1e-9)) & both).any()
             assert (z[known] < film * (1 - 1e-9)).any() and (z[known] > film).any()
-
-
-def test_without_force_there_is_no_map(tmp_path):
-    scene = Scene(**SCENES["sphere"] | {"loading": {"force": 0.0}})
-    write_run(models.solve(scene, models.SAM), scene, tmp_path, {})
-    assert set(drawings_of(read_run(tmp_path))) == {"history", "line"}

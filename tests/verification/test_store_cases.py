@@ -11,7 +11,7 @@ from fake_case import FakeCase, row
 from stored import BOTH, COARSE, COARSE_KEYS, flipped
 from test_report import sketch
 
-from verification.cases.case import Context, Outcome, Plot
+from verification.cases.case import Outcome, Plot
 from verification.judging import Measured
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
@@ -108,13 +108,6 @@ def small(monkeypatch, counted):
     )
     monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
     return case
-
-
-def test_a_case_whose_input_is_no_scene_could_not_be_found_again(tmp_path):
-    kept, case = Store(tmp_path), FakeCase("small", "Small case", "Does it hold?")
-    context = Context("small", tmp_path, "full", lambda *_: None, inputs={"table-2.csv": b""})
-    with pytest.raises(ValueError, match=r"no file of the scenes: \['table-2.csv'\]"):
-        outcomes.keep(kept, case, context, Outcome(), seconds=1.0)
 
 
 def report_of(tmp_path, code=0, name="out", level="quick") -> dict:

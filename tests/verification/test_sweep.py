@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Sweeps end to end: the table, workers that die, what is kept, and the same on a Dask cluster."""
 
-import asyncio
 import csv
-import importlib
 import json
 import os
 import time
 from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,7 +19,7 @@ from optional_packages import dask_distributed
 
 from samfem import executors, sweeping
 from samfem.cli import main
-from samfem.executors import WORKER_DIED, Cluster, Failure, Processes, run
+from samfem.executors import WORKER_DIED, Failure, Processes, run
 from verification.runs import models, threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
@@ -351,31 +348,3 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
     record = sweep_of("dask", "--no-runs", "--scheduler", address)
     assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
     assert record["counts"]["solved"] == 4 and Path("dask/sweep.csv").read_bytes() == calm
-
-
-def cascaded(status, result) -> BaseException:
-    """What distributed's executor makes of a task with this result, and this status after it."""
-    dask_distributed()
-    cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
-
-    async def asked(**_):
-        return result
-
-    async def answer():
-        found = Future()
-        await cascade(SimpleNamespace(status=status, _result=asked), found)
-        return found.exception()
-
-    return asyncio.run(answer())
-
-
-def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
-    def raised(error):
-        try:
-            raise error
-        except TypeError as found:
-            return TypeError, found, found.__traceback__
-
-    workers = SimpleNamespace(_killed=BrokenProcessPool)
-    assert Cluster.died(workers, cascaded("lost", Failure("any value")))
-    assert not Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))

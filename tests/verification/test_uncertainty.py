@@ -364,14 +364,6 @@ def test_what_has_no_coarser_grid_is_refused(sphere, refused, change, words):
     assert words in refused("solve", "asked.toml")
 
 
-def test_a_sweep_refuses_it(sphere, refused):
-    (sphere / "sphere.toml").write_text(f"{TEXT}[solver]\nuncertainty = true\n")
-    (sphere / "study.toml").write_text(
-        'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
-    )
-    assert "solver.uncertainty = true: not in a sweep" in refused("sweep", "study.toml")
-
-
 def test_a_difference_beyond_both_uncertainties_is_seen():
     found = SimpleNamespace(uncertain=[Uncertain("p_max_Pa", each, 1.0, 2.0) for each in (3.0, 3.1)])
     assert [row[-1] for row in _uncertainties(found)["rows"]] == ["True", "False"]
