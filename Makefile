@@ -35,11 +35,11 @@ lint: $(INSTALLED)
 
 # The wheel, in an environment of its own: without extras it solves, with `report` it runs these cases; CASES=quick: all of the
 # quick level.
-wheel: CASES ?= hertz-ellipse hertz-sphere certificates mutation
+wheel: CASES ?= hertz-sphere mutation
 wheel: $(INSTALLED)
 	PYTHON=$(PYTHON) .ci/wheel $(CASES)
 
-# The site in docs/_build/html: without a warning of Sphinx, without a broken link; the gallery runs, of its notebooks some.
+# The site in docs/_build/html: without a warning of Sphinx, without a broken link; the gallery runs, of its notebooks one.
 docs: $(DOCS_INSTALLED)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/tools/check_links.py docs/_build/html

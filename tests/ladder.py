@@ -2,9 +2,9 @@
 """A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
 counted from outside.
 
-`climb` solves rungs, each in a process of its own with empty caches, and tells what ran: kinds of work with
-their calls and sizes, and transforms by the work that they belong to. Nothing in the solvers counts for it:
-functions are wrapped where they are defined, once their module is loaded.
+`climb` solves rungs, each in a fork of a process that has loaded the solvers and solved nothing, and tells
+what ran: kinds of work with their calls and sizes, and transforms by the work that they belong to. Nothing in
+the solvers counts for it: functions are wrapped where they are defined, once their module is loaded.
 """
 
 import functools
@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
+from pkgutil import walk_packages
 
 from builders import CHEMICAL_FILM, SPHERE, STEEL, SWIFT
 
@@ -23,9 +24,6 @@ from verification.runs.models import MODELS
 
 KINDS = ("rfft", "irfft", "fft", "ifft", "dct", "idct", "dst", "idst")
 TRANSFORMS = [f"{kind}{axes}" for kind in KINDS for axes in ("", "2", "n")]
-LOADED = ("pytest", "numpy", "pydantic", "scipy.fft", "scipy.optimize", "scipy.special", "builders")
-"""What every solve loads of other libraries: once, before the processes are forked."""
-
 HARD = {"law": "perfect", "yield_stress": 50e9}
 FILM = {"thickness": 0.4e-6, "young": 80e9, "poisson": 0.3}
 SURFACE = {"kind": "self-affine", "ra": 0.1e-6, "cutoff_long": 16e-6, "cutoff_short": 8e-6}
@@ -331,16 +329,17 @@ def defined(module) -> list[tuple[object, str, str]]:
     return found
 
 
+RECORDER = Recorder()
+
+
 def ran(model: str, rung: str) -> dict:
     """Solve a rung in this process: what it did, and parts of the result."""
-    recorder = Recorder()
-    recorder.install()
     result = import_module(MODELS[model]).solve(scene(rung))
     history = result.tables["history"]
     return {
-        "work": recorder.work,
-        "transforms": recorder.transforms,
-        "wrapped": recorder.wrapped,
+        "work": RECORDER.work,
+        "transforms": RECORDER.transforms,
+        "wrapped": RECORDER.wrapped,
         "left_out": [(entry.stage, entry.reason) for entry in result.left_out],
         "ffts": result.cost["ffts"],
         "depths": result.discretisation.get("depths"),
@@ -351,8 +350,16 @@ def ran(model: str, rung: str) -> dict:
 
 
 def climb(rungs: Sequence[tuple[str, str]]) -> dict[tuple[str, str], dict]:
-    """What ran in each (model, rung), two at once, each in a process that has loaded no solver yet."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(list(LOADED))
-    with ProcessPoolExecutor(2, context, max_tasks_per_child=1) as pool:
-        return dict(zip(rungs, pool.map(ran, *zip(*rungs, strict=True)), strict=True))
+    """What ran in each (model, rung), two at once."""
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as apart:
+        return dict(zip(rungs, apart.submit(_climbed, rungs).result(), strict=True))
+
+
+def _climbed(rungs: Sequence[tuple[str, str]]) -> list[dict]:
+    """In a process of its own, whose solvers are wrapped as they are loaded."""
+    RECORDER.install()
+    for package in map(import_module, PROBES):
+        for module in walk_packages(package.__path__, f"{package.__name__}."):
+            import_module(module.name)
+    with multiprocessing.get_context("fork").Pool(2, maxtasksperchild=1) as pool:
+        return pool.starmap(ran, rungs, chunksize=1)

@@ -196,7 +196,8 @@ class Scene(Section):
             ("friction.path", line and has("friction.path")),
         )
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
-        rows = cells[1] if isinstance(cells, list | tuple) and len(cells) == 2 else 0
+        pair = isinstance(cells, list | tuple) and len(cells) == 2 and hasattr(cells[1], "__float__")
+        rows = cells[1] if pair else 0
         loop, plastic = at("solver.method") == "paper", has("body.plasticity")
         yield from broken(
             *(

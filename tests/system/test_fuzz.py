@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from fake_case import FakeCase
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, example, given, settings, strategies as st
 
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
@@ -115,6 +115,7 @@ def test_a_good_mesh_is_read_in_each_format(tmp_path):
     ),
     st.sampled_from(["body", "body.young", "counterbody.shape", "loading.steps", "grid.cells", "title"]),
 )
+@example([17, "17"], "grid.cells")
 def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
     table = parse_toml(SMALL.encode(), "scene.toml")
     section, _, key = keys.rpartition(".")

@@ -7,6 +7,8 @@ import json
 import os
 import sys
 from dataclasses import replace
+from functools import _lru_cache_wrapper
+from types import FunctionType
 
 import numpy as np
 import pytest
@@ -90,33 +92,43 @@ def test_numbers_comparisons_and_conditions_are_found_and_structure_is_not():
         assert [m.text for m in ones] == texts and [m.ordinal for m in ones] == list(range(len(texts)))
 
 
-@pytest.mark.parametrize(
-    ("text", "function", "ask", "expected"),
-    [
-        ("2", "Body.area", lambda toy: toy.Body().area(2.0), 3.0 / 1.001),
-        ("1.5", "Body", lambda toy: toy.Body().area(2.0), 3.003),
-        ("iterations = 100", "Body", lambda toy: toy.Body().iterations, 102),
-        ("SCALE = 2.5", "", lambda toy: toy.nested(2.0), 1.5025),
-        ("2", "nested.<lambda>", lambda toy: toy.nested(2.0), 2.5 / 1.001 - 1),
-        ("0.25", "remembered", lambda toy: toy.remembered(), 0.25025),
-        ("2", "count", lambda toy: toy.count(3), 7),
-        ("0 < x", "inside", lambda toy: (toy.inside(0), toy.inside(1)), ([0], "inside")),
-        ("not (k == x)", "inside", lambda toy: toy.inside(2), [0, 1]),
-    ],
-)
-def test_a_mutant_is_put_where_it_is_used(toy, text, function, ask, expected):
+def in_forks(tasks):
+    """What each task returns in a fork of this process; all objects are looked at once, before."""
+    inject.living.cache_clear()
+    for kind in (FunctionType, _lru_cache_wrapper):
+        inject.living(kind)
+    return dict(forked(tasks, 30.0))
+
+
+USED = {
+    ("2", "Body.area"): (lambda toy: toy.Body().area(2.0), 3.0 / 1.001),
+    ("1.5", "Body"): (lambda toy: toy.Body().area(2.0), 3.003),
+    ("iterations = 100", "Body"): (lambda toy: toy.Body().iterations, 102),
+    ("SCALE = 2.5", ""): (lambda toy: toy.nested(2.0), 1.5025),
+    ("2", "nested.<lambda>"): (lambda toy: toy.nested(2.0), 2.5 / 1.001 - 1),
+    ("0.25", "remembered"): (lambda toy: toy.remembered(), 0.25025),
+    ("2", "count"): (lambda toy: toy.count(3), 7),
+    ("0 < x", "inside"): (lambda toy: (toy.inside(0), toy.inside(1)), ([0], "inside")),
+    ("not (k == x)", "inside"): (lambda toy: toy.inside(2), [0, 1]),
+}
+"""Text and function of a mutant of the toy -> what shows it, and its answer."""
+
+
+def test_a_mutant_is_put_where_it_is_used(toy):
+    def changed(mutant, ask):
+        inject.put([mutant])
+        return ask(toy)
+
     toy.remembered()
-    (mutant,) = [m for m in find("toy_numbers", TOY) if m.text == text and m.function == function]
-    task = ("it", lambda: (inject.put([mutant]), ask(toy))[1])
-    found = dict(forked([task], 10.0))["it"]
-    assert found == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
+    mutants = {(m.text, m.function): m for m in find("toy_numbers", TOY)}
+    tasks = [(key, lambda key=key, ask=ask: changed(mutants[key], ask)) for key, (ask, _) in USED.items()]
+    found = in_forks(tasks)
+    for key, (_, expected) in USED.items():
+        assert found[key] == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
 
 
 def test_a_task_that_dies_has_no_answer():
-    assert dict(forked([("dies", lambda: os._exit(1)), ("ends", lambda: 3)], 10.0)) == {
-        "dies": None,
-        "ends": 3,
-    }
+    assert in_forks([("dies", lambda: os._exit(1)), ("ends", lambda: 3)]) == {"dies": None, "ends": 3}
 
 
 def test_integer_is_a_number_beside_floats_alone():
@@ -142,7 +154,7 @@ def test_rewriting_alone_changes_no_bit():
         inject.put([m for m in mutants_of("sam.layered.response") if m.kind in scope.NUMBERS], 1.0)
         return spectra()
 
-    np.testing.assert_array_equal(dict(forked([("it", rewritten)], 30.0))["it"], spectra())
+    np.testing.assert_array_equal(in_forks([("it", rewritten)])["it"], spectra())
 
 
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
@@ -154,7 +166,7 @@ def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
         return coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5)
 
     tasks = [(k, lambda row=row: after(row)) for k, row in enumerate(rows)]
-    answers = [answer for _, answer in forked(tasks, 30.0)]
+    answers = in_forks(tasks).values()
     assert answers and all(np.abs(answer / before - 1).max() > 1e-6 for answer in answers)
     np.testing.assert_array_equal(coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5), before)
 

@@ -27,8 +27,8 @@ def pressed(p0, kinematic, **loading):
         body={"young": 210e9, "poisson": 0.3, "plasticity": plasticity},
         loading={"prescribed": "hertz", "p0": p0, "radius": 1e-5, "steps": 3, "unload": True, "cycles": 4}
         | loading,
-        grid={"cells": (25, 25), "extent": (5e-5, 5e-5), "layers": 20, "depth": 3.4e-5},
-        fem={"cells_per_radius": 6, "box": 6.0},
+        grid={"cells": (21, 21), "extent": (5e-5, 5e-5), "layers": 14, "depth": 3.4e-5},
+        fem={"cells_per_radius": 4, "box": 6.0},
         solver={"tolerance": 1e-4},
     )
 

@@ -77,7 +77,7 @@ TO_AND_FRO = judged(
 )
 RUBBED = judged(loading={"cycles": 2}, friction={"coefficient": 0.2}, fem={"cells_per_radius": 2, "box": 3})
 FALLING = running_in(
-    cycles=3,
+    cycles=2,
     steps=1,
     plasticity=RUN_IN_STEEL | {"layer_thickness": 0.2e-6},
     wear={"strain_limit": 0.002, "strain_limit_layer": 0.004, "roof": "falls", "smoothing_fills": True},
@@ -106,7 +106,7 @@ CASES = {
     "SAM, growing box": (SAM, sphere(), small_first_box),
     "SAM, unloading in steps": (SAM, PUNCH, None),
     "SAM, given approach": (SAM, sphere(force=None, approach=0.1e-6), None),
-    "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=2, counterbody={"surface": DISC}), None),
+    "SAM, renewed counter-surface": (SAM, running_in(cycles=3, steps=1, counterbody={"surface": DISC}), None),
     "SAM, parts of a map on a sphere": (SAM, running_in(steps=1, counterbody=MAP_ON_SPHERE), None),
     "SAM, judged, growing box": (SAM, judged(), small_first_box),
     "SAM, judged, path and alternating traction": (SAM, TO_AND_FRO, None),
@@ -166,7 +166,7 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
     """From the file of each of its checkpoints in turn: the next checkpoint, bit by bit, is the
     undisturbed run's.
 
-    By induction every continued solve ends like it. From the first and the last one the end itself is
+    By induction every continued solve ends like it. From one in the middle and the last one the end itself is
     compared: every file of the run.
     """
     model, scene, change = CASES[name]
@@ -184,7 +184,7 @@ def test_a_solve_continued_from_any_checkpoint_gives_the_same_bytes(name, tmp_pa
     for path, following in pairwise(made):
         _, (found,) = made_by(scene, model, further, start=read(path, model), stop=1)
         assert state_of(found) == state_of(following), f"after {path.name}"
-    for path in (made[0], made[-1]):
+    for path in (made[len(made) // 2], made[-1]):
         again = models.solve(scene, model, start=read(path, model))
         assert contents(again, scene, tmp_path / "parts") == expected, f"from {path.name} of {len(made)}"
 

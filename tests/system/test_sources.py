@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The sources: functions and modules within their limits, and docs/equations.md against the code: a
+"""The sources: modules within their limit, and docs/equations.md against the code: a
 row for each equation, names that exist, functions that cite it. ruff holds the other limits.
 """
 
-import ast
 import inspect
 import io
 import re
 import tokenize
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from pkgutil import resolve_name
 
@@ -21,7 +20,7 @@ SOURCES = {
     for path in sorted((ROOT / folder).rglob("*"))
     if path.suffix in (".py", ".md")
 }
-FUNCTION, MODULE = 100, 800  # lines
+MODULE = 800  # lines
 PAGE = SOURCES["docs/equations.md"]
 NUMBERS = {str(k) for k in range(1, 31)}
 WITHOUT_NUMBER = {"D_33": "D_33", "D_31": "D_31", "outside": "outside", "inside": "inside"}
@@ -31,15 +30,10 @@ TEST = re.compile(r"`(tests/[\w/]+\.py)::([\w:]+)`")
 CITATION = re.compile(r"Eqs?\.\s+(\d+(?:(?:, | and | to |-)\d+)*)(?![\d.]*\.\d)")
 
 
-def test_functions_and_modules_within_their_limits():
+def test_modules_within_their_limit():
     python = {name: text for name, text in SOURCES.items() if name.endswith(".py")}
-    assert len(python) > 300 and not [
-        name for name, text in python.items() if len(text.splitlines()) > MODULE
-    ]
-    for name, text in python.items():
-        nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
-        long = [node.name for node in nodes if node.end_lineno - node.lineno >= FUNCTION]
-        assert long == [], name
+    assert len(python) > 300
+    assert not [name for name, text in python.items() if len(text.splitlines()) > MODULE]
 
 
 def rows(page: str) -> dict[str, str]:
@@ -49,6 +43,7 @@ def rows(page: str) -> dict[str, str]:
     return {line.split("|")[1].strip(): line for line in lines}
 
 
+@cache
 def cited(thing: object) -> set[str]:
     """The words of comments and strings of a function, method, property or class, and the numbers
     that they cite: of "Eq. 5", "Eq. 9 and 10", "Eq. 22 to 26"; not "Eq. 3.19" of another source.

@@ -71,6 +71,8 @@ def test_the_wheel_has_every_file_of_the_packages_but_the_mutation_check():
     left_out = {path.as_posix() for path in source - taken}
     assert left_out and all(name.startswith(LEFT_OUT) for name in left_out)
     project = PROJECT["project"]
+    extras = project["optional-dependencies"]["report"]
+    assert {each.split(">=")[0] for each in extras} == set(EXTRAS["report"])
     assert project["license"] == "MIT" and project["license-files"] == ["LICENSE"]
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("MIT License")
 

@@ -131,8 +131,9 @@ class TestCommand:
     @pytest.mark.usefixtures("cannot")
     def test_solving_keeps_the_other_figures_where_space_cannot_be_drawn(self, sphere_folder, samfem):
         shown = samfem("solve", "sphere.toml", "--figures")
-        of_model, *_, of_pictures = shown.err.splitlines()  # between them progress, where it takes a second
-        assert "half-space" in of_model and offscreen.INSTALL in of_pictures and "SIGSEGV" in of_pictures
+        *others, of_pictures = shown.err.splitlines()  # with progress, where it takes a second
+        assert any("half-space" in line for line in others)
+        assert offscreen.INSTALL in of_pictures and "SIGSEGV" in of_pictures
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
 
@@ -177,8 +178,9 @@ class TestDrawn:
         assert {path.name for path in (folder / "figures").iterdir()} == names
         assert sorted(shown.out.split()) == sorted(str(folder / "figures" / name) for name in names)
         for name in names:
-            pixels = np.asarray(Image.open(folder / "figures" / name).convert("RGB"))
-            assert pixels.shape[1] > 1000 and len(np.unique(pixels.reshape(-1, 3), axis=0)) > 200
+            drawn = Image.open(folder / "figures" / name).convert("RGB")
+            assert drawn.width > 1000 and len(drawn.getcolors()) > 200
+            pixels = np.asarray(drawn)
             edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
             assert (edge == 255).all()  # nothing is cut off
         samfem("view", str(folder), "--picture", "worn", "--out", str(tmp_path / "a.png"))

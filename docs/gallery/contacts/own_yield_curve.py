@@ -18,13 +18,13 @@ scene = samfem.Scene(
     title="rigid sphere on steel with a measured yield curve",
     body={"young": "210 GPa", "poisson": 0.3, "plasticity": law},
     counterbody={"shape": "sphere", "radius": "105 um"},
-    loading={"force": "0.17 N", "steps": 8, "unload": True},
-    grid={"cells": (39, 39), "extent": ("14 um", "14 um"), "layers": 16, "depth": "8 um"},
+    loading={"force": "0.17 N", "steps": 6, "unload": True},
+    grid={"cells": (31, 31), "extent": ("14 um", "14 um"), "layers": 12, "depth": "8 um"},
     solver={"uncertainty": True},
 )
 run = samfem.solve(scene)
 print(run)
-loading, last = run.tables["history"].query("step <= 8"), run.tables["history"].tail(2)
+loading, last = run.tables["history"].query("step <= 6"), run.tables["history"].tail(2)
 force = np.linspace(0, 0.17, 100)
 hertz = (3 * force / (4 * 210e9 / (1 - 0.3**2) * np.sqrt(105e-6))) ** (2 / 3)
 

@@ -24,7 +24,7 @@ for axes, coefficient in zip(panels, (0.0, 0.3), strict=True):
         counterbody={"shape": "sphere", "radius": "105 um"},
         loading={"force": "0.1 N", "steps": 4},
         friction={"coefficient": coefficient},
-        grid={"cells": (41, 41), "extent": ("13 um", "13 um"), "depths": depths},
+        grid={"cells": (33, 33), "extent": ("12 um", "12 um"), "depths": depths},
         solver={"uncertainty": True, "tolerance": 1e-4},
     )
     run = samfem.solve(scene)

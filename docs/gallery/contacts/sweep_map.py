@@ -17,6 +17,7 @@ contact = {
     "counterbody": {"shape": "sphere", "radius": "105 um"},
     "loading": {"force": "0.1 N"},
     "friction": {"coefficient": 0.5},
+    "grid": {"cells": (41, 41)},
 }
 # The corner of the largest stress, with the uncertainty of its numbers
 print(samfem.solve(samfem.Scene(**contact, solver={"uncertainty": True})))

@@ -21,7 +21,7 @@ for young, colour in (("80 GPa", "C0"), ("400 GPa", "C1")):
             body={"young": "210 GPa", "poisson": 0.3, "coating": film},
             counterbody={"shape": "sphere", "radius": "105 um"},
             loading={"force": "0.65 N"},
-            grid={"cells": (65, 65), "extent": ("19 um", "19 um")},
+            grid={"cells": (49, 49), "extent": ("19 um", "19 um")},
             solver={"uncertainty": True},
         )
         run = samfem.solve(scene)

@@ -15,7 +15,7 @@ scene = samfem.Scene(
     body={"young": "210 GPa", "poisson": 0.3, "plasticity": steel},
     counterbody={"shape": "sphere", "radius": "105 um"},
     loading={"force": "0.1 N", "steps": 6},
-    grid={"cells": (41, 41), "extent": ("11 um", "11 um"), "layers": 16, "depth": "6 um"},
+    grid={"cells": (33, 33), "extent": ("11 um", "11 um"), "layers": 12, "depth": "6 um"},
     solver={"uncertainty": True},
 )
 run = samfem.solve(scene)
