@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 MODULES = {
-    "AxisymmetricSolid": "fem_reference.axisymmetric.elements",
+    "AxisymmetricSolid": "fem_reference.common.quadrilaterals",
     "Elastic": "fem_reference.common.bodies",
     "Equilibrium": "fem_reference.common.contact",
     "Model": "fem_reference.axisymmetric.model",

@@ -48,6 +48,7 @@ from sam.arrays import Array, Mask
 from sam.grid.cells import Window
 from sam.scene import Wear
 
+Wraps = tuple[bool, bool]
 UNREACHED = 1e300  # a strain, in place of inf: differences stay numbers
 
 
@@ -161,12 +162,13 @@ def weights(window: int, order: int) -> Array:
     return w
 
 
-def filtered(field: Array, window: int, order: int, *, periodic: bool = False) -> Array:
-    """The smoothed field (nx, ny), mirrored at the border or repeated: its sum and its symmetry stay, bit by
-    bit.
+def filtered(field: Array, window: int, order: int, *, wraps: Wraps = (False, False)) -> Array:
+    """The smoothed field (nx, ny), mirrored at the border or, along x and along y, repeated (wraps): its sum
+    and its symmetry stay, bit by bit.
     """
     w, half = weights(window, order), window // 2
-    padded = np.pad(field, half, mode="wrap" if periodic else "symmetric")
+    padded = np.pad(field, ((half, half), (0, 0)), mode="wrap" if wraps[0] else "symmetric")
+    padded = np.pad(padded, ((0, 0), (half, half)), mode="wrap" if wraps[1] else "symmetric")
     out = np.zeros(field.shape)
     for k in range(half + 1):
         for other in range(k + 1):
@@ -189,7 +191,7 @@ def _four(padded: Array, half: int, k: int, l: int) -> Array:  # noqa: E741
 
 
 def smoothed(
-    depth: Array, window: int, order: int, all_removed: bool = False, *, periodic: bool = False
+    depth: Array, window: int, order: int, all_removed: bool = False, *, wraps: Wraps = (False, False)
 ) -> Array:
     """Smoothed worn depth (nx, ny) in m, never below 0: smoothing adds no material. window = 0: as it is. The
     filter keeps the volume (see `filtered`). Around a scar its weights of order >= 2 ask for negative depths;
@@ -203,7 +205,7 @@ def smoothed(
     check_depth(depth)
     if window == 0 or not depth.any():
         return depth
-    return np.maximum(filtered(depth, window, order, periodic=periodic), depth if all_removed else 0.0)
+    return np.maximum(filtered(depth, window, order, wraps=wraps), depth if all_removed else 0.0)
 
 
 def check_depth(depth: Array) -> None:
@@ -306,7 +308,7 @@ class WearState:
 @dataclass(frozen=True)
 class WearLaw:
     """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain. fills: the
-    filter may leave or raise what is removed.
+    filter may leave or raise what is removed; wraps: whether all repeats along x and along y.
     """
 
     shape: tuple[int, int]
@@ -316,7 +318,7 @@ class WearLaw:
     interpolate: bool
     window: int
     order: int
-    periodic: bool = False
+    wraps: Wraps = (False, False)
     roof_falls: bool = False
     fills: bool = False
 
@@ -345,9 +347,9 @@ class WearLaw:
         depth, roofed, roof = (self._on_grid(each, window) for each in raw[:3])
         whole = Worn(depth, roofed, roof, self._on_grid(raw.at_bottom, window))
         if self.fills:
-            depth = filtered(whole.depth, self.window, self.order, periodic=self.periodic)
+            depth = filtered(whole.depth, self.window, self.order, wraps=self.wraps)
         else:
-            depth = smoothed(whole.depth, self.window, self.order, all_removed=True, periodic=self.periodic)
+            depth = smoothed(whole.depth, self.window, self.order, all_removed=True, wraps=self.wraps)
         columns = cells.any(axis=0)  # all others are fresh, and stay so
         below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
         before, after = cells[:, columns], cells.copy()

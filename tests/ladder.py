@@ -211,7 +211,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "verdict.verdict_on": "verdict",
     },
     "fem_reference": {
-        "half_plane": "plane mesh",
+        "tensor_mesh": "plane mesh",
         "rounded_lines": "lines of a rounded edge",
         "hexahedra.block": lambda a: "half block" if a["lines"].half else "whole block",
         "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",

@@ -68,11 +68,10 @@ class Row(BaseModel):
 
 @dataclass(frozen=True)
 class Measured:
-    """A computed value and its independent answer.
-
-    value, expected: numbers, or arrays of one shape for relative_l2; expected stays None for at_most and
-    at_least; weight: of each entry of the arrays (1 by default); unit: for the reader only; scale: by
-    which the difference is divided, in place of the expected value.
+    """A computed value and its independent answer. value, expected: numbers, or arrays of one shape for
+    relative_l2; expected stays None for at_most and at_least; weight: of each entry of the arrays (1 by
+    default); unit: for the reader only; scale: by which the difference is divided, in place of the expected
+    value.
     """
 
     value: object
@@ -98,9 +97,7 @@ class RowStatus(StrEnum):
 
 @dataclass(frozen=True)
 class Verdict:
-    """A row after evaluation. value, expected: None for fields; points: how many values of a field;
-    error: in the gate's metric; note: why it is red.
-    """
+    """A row after evaluation. value, expected: None for fields; error: in the metric; note: why red."""
 
     row: Row
     status: RowStatus
@@ -158,9 +155,7 @@ def judge(row: Row, measured: Measured | None, note: str = "") -> Verdict:
 
 
 def error_of(metric: str, measured: Measured) -> float:
-    """The error in a metric. Raises ValueError when the values do not fit it, TypeError when they are no
-    numbers.
-    """
+    """The error in a metric. ValueError when the values do not fit it, TypeError for no numbers."""
     one_sided = metric in ("at_most", "at_least")
     if measured.value is None or (measured.expected is None) != one_sided:
         raise ValueError(f"metric {metric} needs a value {'alone' if one_sided else 'and an expected value'}")
@@ -191,14 +186,11 @@ def _scalar(value: object, measured: Measured) -> float | None:
 
 
 def evaluate(
-    rows: Sequence[Row],
-    ran: Mapping[str, Mapping[str, Measured]],
-    failures: Mapping[str, str] | None = None,
+    rows: Sequence[Row], ran: Mapping[str, Mapping[str, Measured]], failures: Mapping[str, str] | None = None
 ) -> list[Verdict]:
-    """All verdicts, in the order of the table.
-
-    ran: case -> id of a row -> value of the cases that were run; failures: case -> why it broke off. Rows of
-    other cases are "not run". A value without a row of its case in the table is a red verdict of its own.
+    """All verdicts, in the order of the table. ran: case -> id of a row -> value of the cases that were run;
+    failures: case -> why it broke off. Rows of other cases are "not run". A value without a row of its case
+    in the table is a red verdict of its own.
     """
     failures = failures or {}
     verdicts = []

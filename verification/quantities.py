@@ -41,11 +41,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reference:
-    """An independent answer for a scene.
-
-    values: quantity -> number in SI, or function of the places of its field; units: a (length), p0,
-    approach, or others by which figures divide; curves: (table, column) -> function of the place in m;
-    deepest, inside: how far a field on the axis, a pressure along the surface is compared, in m.
+    """An independent answer for a scene. values: quantity -> number in SI, or function of the places of its
+    field; units: a (length), p0, approach, or others by which figures divide; curves: (table, column) ->
+    function of the place in m; deepest, inside: how far a field on the axis, a pressure along the surface is
+    compared, in m.
     """
 
     values: Mapping[str, Any]
@@ -84,9 +83,7 @@ class Solved:
 
 @dataclass(frozen=True)
 class Values:
-    """A field. places: coordinates in m, as the function of the reference takes them; weight: see
-    Measured.
-    """
+    """A field. places: coordinates in m, as the reference takes them; weight: see Measured."""
 
     places: tuple[Any, ...]
     values: np.ndarray
@@ -108,9 +105,7 @@ class Quantity:
     whole: Callable[[Solved], Measured | float] | None = None
 
     def against(self, name: str, result: Result, reference: Reference | None) -> Measured:
-        """The quantity of a result beside the value of its name in the reference; alone where that has
-        none.
-        """
+        """The quantity of a result beside the value of its name in the reference, where it has one."""
         found = self.of(result, reference)
         if isinstance(found, Measured):
             return found
@@ -138,9 +133,7 @@ def _load(result: Result, reference: Reference) -> float:
 
 
 def _pressure(result: Result, reference: Reference) -> Values:
-    """On the cells of SAM, at the nodes of FEM with the area 2 pi r dr of each, dr in a section; along the
-    line inside a punch.
-    """
+    """On the cells of SAM, the nodes of FEM with their area 2 pi r dr, or dr; along the line in a punch."""
     if np.isfinite(reference.inside):
         x, p = peak(result.tables["line"], "x_m", "p_Pa")
         x, p = x[inside := (x >= 0.0) & (x <= reference.inside)], p[inside]
@@ -153,9 +146,7 @@ def _pressure(result: Result, reference: Reference) -> Values:
 
 
 def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
-    """Both over the cells of SAM; between other cells p is bilinear, zero beyond the outermost, between nodes
-    linear where the body yields, else p^2; of the three-dimensional model at its nodes.
-    """
+    """Both over the cells of SAM: between other cells bilinear, between nodes linear in p or p^2."""
     if other.model == FEM_3D:
         return Measured(*nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
@@ -207,9 +198,7 @@ def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
-    """Of a rough patch on the cells that both models have in common, else at the nodes of FEM with their
-    areas.
-    """
+    """Of a rough patch on the cells that both models have, else at the nodes of FEM with their areas."""
     if scene.patch_surface:
         return Measured(*(patch_pressure(each.tables)[-1] for each in (sam, fem)))
     return Measured(*nodal_pressures(sam, fem))
@@ -241,9 +230,7 @@ def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _strip_width(result: Result, reference: Reference) -> float:
-    """Of a wave in contact, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939), of
-    the cells but the outermost, through which the edge passes.
-    """
+    """Of a wave, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939)."""
     x, _, p = pressure_map(result)
     wave, bears = reference.units["wave"], p[:, 0] > 0.0
     use = bears & np.roll(bears, 1) & np.roll(bears, -1)

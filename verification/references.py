@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The independent answers that a case may name, `reference = "..."`: each a function of the scene, made
-of the library in `verification.reference`.
-"""
+"""The independent answers that a case may name, each a function of the scene by `verification.reference`."""
 
 from __future__ import annotations
 
@@ -56,9 +54,7 @@ def _pressed(
     inside: float = np.inf,
     share: float = 1.0,
 ) -> Reference:
-    """What contacts on a circle have in common. stress: at depths on the axis, (..., 6); share: of the body
-    in the displacement of both.
-    """
+    """What contacts on a circle share. stress: at depths on the axis, (..., 6); share: of the body."""
     a = exact.contact_radius
     known = {
         "approach": exact.approach,
@@ -96,9 +92,7 @@ def hertz_sphere(scene: Scene) -> Reference:
 
 
 def hertz_line(scene: Scene) -> Reference:
-    """Hertz's line contact with the stresses of McEwen (1949), with friction those of its pressure in full
-    slip, which moves between bodies of unlike moduli.
-    """
+    """Hertz with the stresses of McEwen (1949), with friction those of its pressure in full slip."""
     exact, nu = cast(LineContact, contact_of(scene)), scene.body.poisson
     a, p0, friction = exact.contact_radius, exact.peak_pressure, scene.coefficient
     largest, depth = exact.largest_von_mises(nu)
@@ -195,9 +189,7 @@ def coated_contact(scene: Scene) -> CoatedContact:
 
 
 def coated_sphere(scene: Scene) -> Reference:
-    """A spectral solution of the contact on a coated half-space; film and body apart, the body at z >=
-    thickness also without film.
-    """
+    """A spectral solution on a coated half-space; film and body apart, the body also without film."""
     exact = coated_contact(scene)
     a, p0, body = exact.contact_radius, exact.central_pressure, largest_mises(exact).value
 
@@ -231,10 +223,7 @@ def hamilton(scene: Scene) -> Reference:
     """Hamilton (1983): stresses over p0, (..., 6), under a given Hertz pressure and traction."""
     a, p0 = scene.loading.radius, scene.loading.p0
     unit = {"contact_radius": a, "nu": scene.body.poisson, "friction": scene.coefficient}
-    return Reference(
-        {"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)},
-        {"a": a, "p0": p0},
-    )
+    return Reference({"stress": lambda x, y, z: sliding_stress(x, y, z, 1.0, **unit)}, {"a": a, "p0": p0})
 
 
 def travelling_load(scene: Scene) -> Reference:
@@ -266,9 +255,7 @@ def film_changes(scene: Scene) -> Reference:
 
 
 def changes_by_film(scene: Scene) -> tuple[float, float]:
-    """What the film changes, as shares of the contact without it: largest pressure, and largest von Mises
-    stress of the body.
-    """
+    """What the film changes, as shares without it: largest pressure, and von Mises of the body."""
     body, film = scene.body, scene.body.coating
     counter = _counter_modulus(scene) / (body.young / (1.0 - body.poisson**2))
     thickness = film.thickness / contact_of(scene).contact_radius
@@ -306,9 +293,7 @@ def wave(scene: Scene) -> Reference:
 
 
 def double_wave(scene: Scene) -> Reference:
-    """Johnson, Greenwood & Higginson (1985): both limits, a fit, and the area in Fourier series; the largest
-    pressure as of `wave`.
-    """
+    """Johnson, Greenwood & Higginson (1985): both limits, a fit, Fourier series; the peak as of `wave`."""
     exact = DoublyWavyContact(*_wavy(scene))
     (nx, ny), (lx, ly) = scene.patch
     x, y = ((np.arange(n) + 0.5) * side / n - 0.5 * side for n, side in ((nx, lx), (ny, ly)))

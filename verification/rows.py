@@ -57,9 +57,7 @@ WORDS = {
     "friction": "μ = {}",
     "steps": "{} load steps",
 }
-"""What rows say of a model, a statistic, the value of an axis or an axis ("{}": its value); a case has more
-under `words`.
-"""
+"""What rows say of a model, a statistic, an axis or its value ("{}"); a case has more under `words`."""
 _TAKE = re.compile(
     r"(?:([a-z-]+) )??([a-z0-9-]+)(?: of ([a-z0-9/ -]+?))?(?: at (.+))?|([-+.0-9e]+)", re.ASCII
 )
@@ -68,7 +66,6 @@ _AT = re.compile(r"([a-zA-Z0-9_.-]+) (=|<|>) (\S+)")
 
 class Take(NamedTuple):
     """What a row takes of the frame of the sweeps: `STATISTIC COLUMN of SWEEP MODEL at AXIS = VALUE, ...`.
-
     statistic: a name in `verification.cases.sweep.STATISTICS` or of a function beside the file; of: names of
     sweeps and models; at: (axis, comparison, value). What it is held against follows a bar: a number alone,
     another take, or `of` and names in place of its own.
@@ -121,9 +118,7 @@ class Take(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """A row of a file, with the variant of the scene, the model and what that is held against ("" for what
-    it lacks), its quantity, and what it takes of the sweeps, with what that is held against.
-    """
+    """A row with the variant, model and what it is held against, its quantity, what it takes of sweeps."""
 
     row: Row
     variant: str
@@ -144,12 +139,11 @@ class Claim(NamedTuple):
 
 
 class SweepFile(BaseModel):
-    """Points at which the scene of a case is solved.
-
-    models: that solve each; axes: key of the scene or recipe -> its values, or name -> the keys and recipes
-    of a value; quick: axes with other values at that level; columns: quantity, or a function beside the
-    file -> "value", "between" (SAM against FEM), or the metric of its error against the reference, a list of
-    names for values alone; size: what is refined, for orders and limits.
+    """Points at which the scene of a case is solved. models: that solve each; axes: key of the scene or
+    recipe -> its values, or name -> the keys and recipes of a value; quick: axes with other values at that
+    level; columns: quantity, or a function beside the file -> "value", "between" (SAM against FEM), or the
+    metric of its error against the reference, a list of names for values alone; size: what is refined, for
+    orders and limits.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)

@@ -23,9 +23,7 @@ MORRIS, SOBOL, UNIFORM = METHODS = "morris", "sobol", "uniform"
 
 @dataclass(frozen=True)
 class Index:
-    """Values (factors,) of an index, both bounds (2, factors) of its confidence interval, and the number
-    (factors,) of samples that it is from.
-    """
+    """Values (factors,), bounds (2, factors) of confidence, and number (factors,) of samples of an index."""
 
     name: str
     values: np.ndarray
@@ -66,7 +64,6 @@ def _trajectory(rng: np.random.Generator, factors: int) -> np.ndarray:
 
 def indices(method: str, shares: np.ndarray, values: np.ndarray, seed: int) -> list[Index]:
     """Indices of a result whose values (points,) at the points of a design are known, NaN where it has none.
-
     morris: mu* (mean size of the effect of the whole range), mu, sigma (spread of the effects: interaction or
     curvature); sobol: first-order and total shares of the variance; uniform: correlation of ranks. Effects,
     or samples, without a value are left out. None of a result that never changes, or of fewer than two

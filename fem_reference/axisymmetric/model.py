@@ -11,7 +11,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.axisymmetric.planner import AxisymmetricPlan
 from fem_reference.axisymmetric.problem import Block, ContactProblem
@@ -20,8 +19,8 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import REACH, edge_radius
-from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
 
 
@@ -29,16 +28,8 @@ from fem_reference.common.schedule import Load
 class Model(ContactModel):
     """The axisymmetric model of a plan.
 
-    Attributes
-    ----------
-    plan : AxisymmetricPlan
-        Units, bodies and mesh lines.
-    problem : ContactProblem
-        The bodies in contact.
-    surface : (n_surface,) array
-        Radii of the surface nodes, ascending; the first `candidates` of them may touch.
-    misfit : (4, n_elements, 4) array or None
-        Misfit strain under a unit of the load.
+    problem: the bodies in contact; surface: (n_surface,) radii of the surface nodes, ascending, the first
+    `candidates` of which may touch; misfit: (4, n_elements, 4) misfit strain under a unit of the load.
     """
 
     plan: AxisymmetricPlan
@@ -97,14 +88,6 @@ class Model(ContactModel):
         """Area of the contact in m^2."""
         return float(np.pi * (self.contact_radius(state) * self.scales.length) ** 2)
 
-    def friction(self, state: Equilibrium) -> float:
-        """Zero: the model has no friction."""
-        return 0.0
-
-    def displacements(self, state: Equilibrium) -> Array:
-        """Displacements of the half-space."""
-        return self.problem.body(state.u, 0)
-
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
         return self.problem.internal_force(state.u, state.history)[self.problem.normal[self.problem.slave]]
@@ -143,10 +126,9 @@ class Model(ContactModel):
         outermost = (p[:, t] == p.max(axis=1)[:, None, None]).any(axis=(0, 1))
         return bool((peeq > 0.0)[outermost].any())
 
-    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
-        """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
-        radius = max(self.contact_radius(state) for state in states) if self.misfit is None else 1.0
-        return round(radius * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS
+    def size(self, state: Equilibrium) -> float:
+        """Radius of the contact, or of a misfit sphere."""
+        return self.contact_radius(state) if self.misfit is None else 1.0
 
 
 def axis_pressure(r: Array, p: Array, area: Array) -> float:
@@ -156,7 +138,7 @@ def axis_pressure(r: Array, p: Array, area: Array) -> float:
 
 def build(plan: AxisymmetricPlan) -> Model:
     """Mesh, bodies, material and contact candidates of a plan."""
-    mesh, bodies = half_plane(plan.r, plan.z), plan.bodies
+    mesh, bodies = tensor_mesh(plan.r, plan.z, half=True), plan.bodies
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     blocks = [
         Block(AxisymmetricSolid(mesh, elastic, coating=coating), elastic)

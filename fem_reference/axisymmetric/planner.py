@@ -13,7 +13,7 @@ import numpy as np
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Elastic, coating_of, expected_radius, yielded_radius
-from fem_reference.common.hertz import kinks_of, plastic_radius, relative_moduli, required, scales
+from fem_reference.common.hertz import ROUNDED, kinks_of, plastic_radius, relative_moduli, scales
 from fem_reference.common.mesh_lines import (
     CLOSEST,
     GROWTH,
@@ -23,19 +23,11 @@ from fem_reference.common.mesh_lines import (
     marched,
     uniform_then_growing,
 )
-from fem_reference.common.plan import Plan, planned, stages_of
-from fem_reference.common.refusals import (
-    box_problems,
-    coating_problems,
-    incompressible,
-    refuse,
-    running_in_problems,
-    shape_problems,
-)
-from fem_reference.common.rounded import ROUNDED
-from sam.scene.result import LeftOut, Stage
+from fem_reference.common.plan import Plan, planned, section_of
+from fem_reference.common.refusals import box_problems, coating_problems, problems_of, refuse
+from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
-from sam.scene.section import Problem, spelling
+from sam.scene.section import Problem, spelling, stated
 
 MODEL = "fem-axisymmetric"
 SHAPES = ("sphere", "punch", ROUNDED)
@@ -72,25 +64,8 @@ class AxisymmetricPlan(Plan):
 
 
 def plan(scene: Scene) -> AxisymmetricPlan:
-    """Return what the axisymmetric model solves of a scene.
+    """What the axisymmetric model solves of a scene; UnsupportedScene as of `check`.
 
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    AxisymmetricPlan
-        Units, bodies, mesh lines, load schedule, and the stages with their sizes and reasons.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-
-    Examples
-    --------
     >>> sphere = Scene(
     ...     body={"young": 210e9, "poisson": 0.3},
     ...     counterbody={"shape": "sphere", "radius": 1e-4},
@@ -108,20 +83,11 @@ def plan(scene: Scene) -> AxisymmetricPlan:
         r, z = choose_lines(scene)
     else:
         r, z = sphere_lines(fem.cells_per_radius, fem.box, core_about(scene, misfit), misfit.depth)
-    bodies, columns, rows = 2 if counter is not None and counter.elastic else 1, r.size - 1, z.size - 1
-    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
-    elements, unknowns, points = bodies * columns * rows, 2 * bodies * nodes, 4 * columns * rows
     where = "contact radius" if misfit is None else "radius of the sphere"
-    reason = f"{fem.cells_per_radius} cells in the {where}, box of {fem.box:g} radii"
-    size = {"elements": elements, "bodies": bodies, "unknowns": unknowns}
-    stages = [Stage("mesh", True, reason, size)]
-    if bodies > 1:
-        words = "elastic: that of the body, turned over"
-        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
-    stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
+    words = f"{fem.cells_per_radius} cells in the {where}, box of {fem.box:g} radii"
     opening = 1.0  # the units are those of a sphere but for a rounded edge
     if counter is not None and counter.shape == ROUNDED:
-        opening = units.length / required(counter.radius) / units.strain
+        opening = units.length / stated(counter.radius) / units.strain
     return planned(
         AxisymmetricPlan,
         scene,
@@ -134,71 +100,41 @@ def plan(scene: Scene) -> AxisymmetricPlan:
         misfit=misfit,
         flat=flat_end(scene),
         opening=opening,
-        elements=elements,
-        unknowns=unknowns,
-        points=points,
-        stages=stages_of(scene, stages, stresses),
+        **section_of(scene, r, z, words),
     )
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
-    """Return the stages of the axisymmetric model that a scene does not need, with the reason.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    list of LeftOut
-        As a result of `solve` has them.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-    """
+    """Stages that a scene does not need, with the reason, as a result of `solve` has them."""
     return plan(scene).left_out
 
 
 def check(scene: Scene) -> None:
-    """Check that the axisymmetric model can represent a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Raises
-    ------
-    UnsupportedScene
-        With every reason at once: key, value and what is allowed.
+    """Raise UnsupportedScene with every reason at once, key, value and what is allowed, for a scene that the
+    axisymmetric model cannot represent.
     """
-    problems = shape_problems(scene, SHAPES, "axisymmetric")
+    problems, allows = (
+        problems_of(scene, SHAPES, "axisymmetric"),
+        "the axisymmetric finite-element model allows",
+    )
     if scene.coefficient > 0:
-        words = "the axisymmetric finite-element model allows 0: friction leaves no symmetry of rotation"
+        words = f"{allows} 0: friction leaves no symmetry of rotation"
         problems.append(Problem("friction.coefficient", spelling(scene.coefficient), words))
     if scene.loading.path:
         words = "a load that stays on the axis of symmetry: remove it"
         problems.append(Problem("loading.path", "a table", words))
-    for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
-        problems += [] if body is None else incompressible(key, body.poisson)
     if scene.surface is not None:
-        words = "the axisymmetric finite-element model allows a smooth body: remove [surface]"
+        words = f"{allows} a smooth body: remove [surface]"
         problems.append(Problem("surface.kind", spelling(scene.surface.kind), words))
     if scene.counter_surface is not None:
-        words = "the axisymmetric finite-element model allows a smooth counter-body: remove the table"
+        words = f"{allows} a smooth counter-body: remove the table"
         problems.append(Problem("counterbody.surface.kind", spelling(scene.counter_surface.kind), words))
-    problems += running_in_problems(scene)
     refuse(problems)
     problems, end = coating_problems(scene), flat_end(scene)  # these need the contact radius of a shape
     if end and 0.0 < 1.0 - end < NARROWEST:
         words = f"more: the contact ends {1.0 - end:.2g} of its radius beyond the flat end, the mesh allows "
         words += f'{NARROWEST:g}; or shape = "punch"'
-        problems.append(
-            Problem("counterbody.radius", spelling(required(scene.counterbody).radius, "m"), words)
-        )
+        problems.append(Problem("counterbody.radius", spelling(stated(scene.counterbody).radius, "m"), words))
     refuse(problems)
     if (misfit := misfit_of(scene)) is not None:
         zone = _zone(scene, misfit)
@@ -220,8 +156,8 @@ def misfit_of(scene: Scene) -> MisfitSphere | None:
     if not loading.misfit_sphere:
         return None
     elastic = Elastic(relative_moduli(scene)[0], scene.body.poisson)
-    depth = required(loading.depth) / required(loading.radius)
-    return MisfitSphere(elastic, depth, required(loading.profile), free=loading.surface == "free")
+    depth = stated(loading.depth) / stated(loading.radius)
+    return MisfitSphere(elastic, depth, stated(loading.profile), free=loading.surface == "free")
 
 
 def core_about(scene: Scene, sphere: MisfitSphere) -> float:
@@ -314,7 +250,7 @@ def rounded_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
 
 def coated_core(scene: Scene, plastic: float | None) -> Core:
     """The well resolved part of the mesh, of the larger contact; plastic: its radius after yield."""
-    flows = required(scene.body.coating).yield_stress is not None
+    flows = stated(scene.body.coating).yield_stress is not None
     reach = max(1.0, expected_radius(scene), plastic or 1.0, yielded_radius(scene))
     if flows or plastic is not None:
         return plastic_core(reach)
@@ -323,7 +259,7 @@ def coated_core(scene: Scene, plastic: float | None) -> Core:
 
 def coated_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
     """(r, z) mesh lines, sized by the smaller contact, with and without coating, near it."""
-    coating = required(coating_of(scene, scales(scene)))
+    coating = stated(coating_of(scene, scales(scene)))
     cells, box = scene.fem.cells_per_radius, scene.fem.box
     if is_punch(scene):
         r, z = punch_lines(cells, box)

@@ -18,13 +18,13 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, cg, splu
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid
-from fem_reference.common.arrays import Array, Bools, Integers
+from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import normal_far_field
-from fem_reference.common.linear import Counted, Kept, nested_dissection
+from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, elimination_order
 from fem_reference.common.schedule import Load
 
 FEW = 12
@@ -70,8 +70,6 @@ class ContactProblem:
         *,
         far: Array | None = None,
     ):
-        if len(blocks) not in (1, 2):
-            raise ValueError(f"blocks: {len(blocks)}, allowed are one (rigid counter-body) or two")
         self.blocks, self.gap0, self.material, self.prescribed = tuple(blocks), gap0, material, prescribed
         sizes = [block.solid.size for block in blocks]
         self.size = sum(sizes)
@@ -82,22 +80,7 @@ class ContactProblem:
         # displacements of the softer body are eliminated: those of a nearly rigid one are small differences
         self.slave = int(np.argmin([block.elastic.young for block in blocks]))
         self.fixed, self.far_field = self._supports(far)
-        self.order = self._order()
-
-    def _order(self) -> Integers:
-        """(size,) degrees of freedom as they are eliminated; the second body lies above."""
-        mesh = self.blocks[0].solid.basis.mesh
-        corners = [np.unique(np.round(line, 12)) for line in mesh.p]
-        places = np.concatenate([block.solid.basis.doflocs for block in self.blocks], axis=1)
-        numbers = [
-            np.interp(place, line, np.arange(line.size)) for place, line in zip(places, corners, strict=True)
-        ]
-        r, z = np.rint(2.0 * np.array(numbers)).astype(int)  # mid nodes are halfway
-        rows = corners[1].size - 1
-        second = np.arange(self.size) >= self.blocks[0].solid.size
-        z = np.where(second, -z, z) + 2 * rows * (len(self.blocks) - 1)
-        part = nested_dissection(corners[0].size - 1, rows * len(self.blocks))
-        return np.argsort(part[r, z], kind="stable")
+        self.order = elimination_order(blocks[0].solid, len(blocks))
 
     def _supports(self, far: Array | None) -> tuple[Bools, Array]:
         """(size,) prescribed degrees of freedom, and their values under a unit force."""

@@ -14,8 +14,8 @@ from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.hertz import required
-from fem_reference.common.recovery import Peak, continued, parabola_peak
+from fem_reference.common.recovery import Peak, continued, over_depth, plastic_fields
+from sam.scene.section import stated
 from sam.scene.yield_curve import Kinks
 
 
@@ -47,7 +47,7 @@ class Stresses:
 
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or from it downwards."""
-        interface = required(self.interface)
+        interface = stated(self.interface)
         elements = (self.z.mean(axis=1) < interface) == coating
         axis = (self.axis_z < interface) == coating
         return Stresses(
@@ -64,12 +64,10 @@ class Stresses:
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
     """Stresses of a load step; never averaged over elements."""
-    unit, history = model.scales, state.history
+    unit = model.scales
     r, z = model.body.points * unit.length
-    gauss, peeq, tensor = model.stress(state) * unit.pressure, np.zeros(r.shape), None
-    if history is not None:
-        peeq, shear = history.peeq * unit.strain, np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
-        tensor = history.plastic_strain * unit.strain * shear
+    gauss = model.stress(state) * unit.pressure
+    peeq, tensor = plastic_fields(state.history, gauss, unit.strain, lambda field: field)
     axis_z, axis = on_axis(r, z, gauss)
     axis[:2] = 0.5 * (axis[0] + axis[1])
     axis[3] = 0.0
@@ -116,7 +114,7 @@ def largest_in_layer(s: Stresses, coating: bool) -> Peak:
     inside = largest_mises(part)
     if coating and part.peeq.any():
         return inside
-    interface = required(s.interface)
+    interface = stated(s.interface)
     depths = (0.0, interface) if coating else (interface,)
     on_faces = [(float(mises(on_face(part, depth)).max()), depth) for depth in depths]
     return max(inside, *on_faces, key=lambda peak: peak[0])
@@ -158,16 +156,11 @@ def largest_peeq(s: Stresses) -> Peak:
 
 def largest(s: Stresses, gauss: Array, axis: Array) -> Peak:
     """Largest value over Gauss points (n_elements, 4) and axis (n_axis,), and its depth in m (None if all
-    are zero).
-
-    On the axis, value and depth are those of the parabola through the largest value and its neighbours; not
-    across a kink of the yield stress, where a soft layer strains most: it would overshoot.
+    are zero); on the axis of `over_depth`.
     """
     i = int(np.argmax(axis))
     if gauss.max() > axis[i]:
         return float(gauss.max()), float(s.z.ravel()[np.argmax(gauss)])
     if axis[i] == 0.0:
         return 0.0, None
-    if not 0 < i < axis.size - 1 or np.ptp(s.kinks.interval(s.axis_z[i - 1 : i + 2])):
-        return float(axis[i]), float(s.axis_z[i])
-    return parabola_peak(s.axis_z[i - 1 : i + 2], axis[i - 1 : i + 2])
+    return over_depth(s.axis_z, axis, i, s.kinks)

@@ -5,7 +5,7 @@ meshes, never a result.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,15 +19,7 @@ EVEN = Kinks()
 
 @dataclass(frozen=True)
 class Elastic:
-    """Constants of an isotropic elastic body.
-
-    Attributes
-    ----------
-    young : float
-        Young's modulus in any unit of stress.
-    poisson : float
-        Poisson's ratio, 0 <= poisson < 0.5.
-    """
+    """Constants of an isotropic elastic body: Young's modulus in any unit of stress, 0 <= poisson < 0.5."""
 
     young: float
     poisson: float
@@ -59,21 +51,12 @@ class Bodies:
     @property
     def yields(self) -> bool:
         """Whether any part of the half-space has a yield stress."""
-        return self.strength is not None or self.coating_yields
+        return self.strength is not None or (self.coating is not None and self.coating_yield is not None)
 
     @property
     def kinks(self) -> Kinks:
         """Depths in m at which the yield stress has a kink or a jump."""
         return EVEN if self.strength is None else self.strength.kinks
-
-    @property
-    def coating_yields(self) -> bool:
-        """Whether there is a coating with a yield stress."""
-        return self.coating is not None and self.coating_yield is not None
-
-    def without_coating(self) -> Bodies:
-        """The same with the material of the half-space in place of its coating."""
-        return replace(self, coating=None)
 
 
 def coating_of(scene: Scene, units: Scales) -> Coating | None:

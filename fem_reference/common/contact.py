@@ -43,7 +43,7 @@ class NotDefiniteError(ArithmeticError):
 @dataclass
 class ActiveSet:
     """Nodes in contact; the first node, under the apex, always stays, unless `anchored` is false: then the
-    last one does.
+    last one does. pressed: whether there is contact at all, without which nothing changes.
 
     `update` makes the full primal-dual correction until a set comes back (ping-pong); from then on it
     corrects one node at a time, the one of the largest violation, and `stuck` is true when a set comes back
@@ -52,6 +52,7 @@ class ActiveSet:
 
     active: Bools
     anchored: bool = True
+    pressed: bool = True
     single: bool = False
     stuck: bool = False
     seen: set[bytes] = field(default_factory=set)
@@ -61,7 +62,7 @@ class ActiveSet:
         violation = np.where(self.active, -multipliers, -gaps)
         violation[0 if self.anchored else np.argmax(np.where(self.active, multipliers, -np.inf))] = 0.0
         wrong = violation > SIGN
-        if not wrong.any():
+        if not (self.pressed and wrong.any()):
             return False
         self.seen.add(self.active.tobytes())
         corrected = self.active ^ wrong
@@ -80,47 +81,15 @@ class ActiveSet:
 
 
 @dataclass(frozen=True)
-class Open:
-    """The empty set of nodes in contact, where nothing touches: it never changes."""
-
-    active: Bools
-    stuck: bool = False
-
-    def forget(self) -> None:
-        """Do nothing: there is nothing to remember."""
-
-    def update(self, _multipliers: Array, _gaps: Array) -> bool:
-        """Return False: the set never changes."""
-        return False
-
-
-@dataclass(frozen=True)
 class Equilibrium:
     """A solved load step.
 
-    Attributes
-    ----------
-    u : (size,) array
-        Displacements of all bodies.
-    approach : float
-        Approach of the bodies, counted from infinity.
-    load : Load
-        Force, tangential traction and place; where the approach is given with the force that was found.
-    multipliers, gap, active : (n_candidates,) arrays
-        Nodal forces, gaps and whether in contact, of the nodes that may touch, by their distance from
-        the apex.
-    history : History or None
-        Plastic strain of the half-space at the end of the step; None if it is elastic.
-    residuals : tuple of float
-        Largest force on a free degree of freedom over the force, after each iteration.
-    steady : int
-        How many of the last iterations left the set of nodes in contact as it was.
-    converged : bool
-        Whether the iteration reached equilibrium.
-    work : Work
-        Counters of the iteration.
-    ending : str
-        Why it did not converge, in words.
+    u: (size,) displacements of all bodies; approach: of the bodies, counted from infinity; load: where the
+    approach is given with the force that was found; multipliers, gap, active: (n_candidates,) nodal forces,
+    gaps and whether in contact, by the distance from the apex; history: plastic strain of the half-space at
+    the end of the step, None if it is elastic; residuals: largest force on a free degree of freedom over the
+    force, after each iteration; steady: how many of the last iterations left the nodes in contact as they
+    were; converged: whether equilibrium was reached; work: counters; ending: why it was not, in words.
     """
 
     u: Array
@@ -216,7 +185,7 @@ def equilibrium(
     if problem.anchored or not start.any():
         start = start | (np.arange(start.size) == problem.gap0.argmin())
     before = Equilibrium(u, 0.0, load, np.zeros(start.size), problem.gap0, start, history, converged=False)
-    return _iterate(problem, before, load.force, ActiveSet(start, problem.anchored))
+    return _iterate(problem, before, load.force, ActiveSet(start, anchored=problem.anchored))
 
 
 def without_contact(
@@ -225,10 +194,10 @@ def without_contact(
     """Equilibrium under a prescribed pressure, or none. scale: the force that residuals are measured by."""
     none = np.zeros(problem.gap0.size, dtype=bool)
     before = Equilibrium(u, 0.0, load, np.zeros(none.size), problem.gap0, none, history, converged=False)
-    return _iterate(problem, before, scale, Open(none))
+    return _iterate(problem, before, scale, ActiveSet(none, pressed=False))
 
 
-def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: ActiveSet | Open) -> Equilibrium:
+def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: ActiveSet) -> Equilibrium:
     """The semi-smooth Newton iteration from `state`, with the load and history of its beginning."""
     load, history, u = state.load, state.history, state.u
     residuals: list[float] = []
@@ -256,7 +225,7 @@ def _iterate(problem: Problem, state: Equilibrium, scale: float, contact: Active
         state = Equilibrium(
             u, approach, load, multipliers, gap, active, end, tuple(residuals), steady, converged
         )
-        if converged or contact.stuck or hopeless(residuals):
+        if converged or contact.stuck or not residuals[-1] < DIVERGED or stalled(residuals):
             break
     ending = "" if state.converged else ended(residuals, definite, contact.stuck)
     return replace(state, work=Work(len(residuals), kept.setups, kept.linear), ending=ending)
@@ -283,11 +252,6 @@ def ended(residuals: Sequence[float], definite: bool, stuck: bool) -> str:
     if stuck:
         return "the set of nodes in contact stagnated: it keeps coming back"
     return unfinished("Newton's method", residuals, EQUILIBRIUM, stalled(residuals))
-
-
-def hopeless(residuals: Sequence[float]) -> bool:
-    """Whether the residuals, in the order of the iterations, have diverged or stalled."""
-    return not residuals[-1] < DIVERGED or stalled(residuals)
 
 
 def stalled(residuals: Sequence[float]) -> bool:

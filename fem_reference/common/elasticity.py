@@ -40,6 +40,11 @@ def deviator(stress: Array) -> Array:
     return s
 
 
+def on_grid(points: Array, shape: tuple[int, ...]) -> Integers:
+    """Numbers of the points (dimension, n) of a tensor grid, as an array of the shape of the grid."""
+    return np.lexsort(np.round(points, 12)[::-1]).reshape(shape)
+
+
 class Solid:
     """An elastic body on a mesh, given the strain operator of its elements.
 

@@ -111,18 +111,14 @@ def stretched(body: Elastic, points: Array) -> tuple[Array, Array]:
     return u / (np.pi * soft), 2.0 * deeper / (np.pi * soft * square)
 
 
-WORDS = {
-    "half-space": "displacements of the point force on the outer boundary",
-    "coated half-space": "displacements of the point force on the layered half-space on the outer boundary",
-}
-"""What a result says of the far field, by kind of body."""
-MODULES = {"coated half-space": "fem_reference.common.layered_force"}
-"""Modules of the kinds of body that need one beside `point_force`."""
+LAYERED = "fem_reference.common.layered_force"
+"""Loaded for a coated body alone."""
 
 
-def kind_of(coating: Coating | None) -> str:
-    """The kind of body in WORDS and MODULES."""
-    return "half-space" if coating is None else "coated half-space"
+def words_of(coating: Coating | None) -> str:
+    """What a result says of the far field."""
+    kind = "" if coating is None else " on the layered half-space"
+    return f"displacements of the point force{kind} on the outer boundary"
 
 
 def normal_far_field(coating: Coating | None, body: Elastic, r: Array, z: Array) -> Array:
@@ -130,10 +126,10 @@ def normal_far_field(coating: Coating | None, body: Elastic, r: Array, z: Array)
     u = boussinesq(1.0, body, r, z)
     if coating is None:
         return u
-    effect: Array = import_module(MODULES[kind_of(coating)]).normal(coating, body, r, z)
+    effect: Array = import_module(LAYERED).normal(coating, body, r, z)
     return u + effect
 
 
 def coating_effect(coating: Coating, body: Elastic, points: Array, *, sliding: bool) -> Array:
     """(2, 3, n) as `slanted_pair` of `layered_force`, which is loaded for a coating only."""
-    return import_module(MODULES[kind_of(coating)]).slanted_pair(coating, body, points, sliding=sliding)
+    return import_module(LAYERED).slanted_pair(coating, body, points, sliding=sliding)

@@ -7,16 +7,18 @@ What takes a scene here is part of the planners.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.rounded import ROUNDED, force_at, radius_at_approach, radius_under_force
 from sam.scene import CounterBody, Scene
+from sam.scene.section import stated
 
-T = TypeVar("T")
+ROUNDED = "rounded-punch"
+HALVINGS = 60
+"""Of the range of the angle of a rounded edge: to the last digit."""
 PUNCHES = ("punch", ROUNDED)
 """Shapes whose contact with a flat end has the units of a flat-ended cylinder."""
 DECAY = 1.7
@@ -56,13 +58,6 @@ class Scales:
         return self.peak_force * self.pressure * self.length**2
 
 
-def required(value: T | None) -> T:
-    """The value of a key that the schema requires of a scene of this kind."""
-    if value is None:
-        raise ValueError("a value that the scene must have is missing")
-    return value
-
-
 def relative_moduli(scene: Scene) -> tuple[float, ...]:
     """E1/E* (and E2/E* of an elastic counter-body), from Poisson's ratios and E1/E2 alone.
 
@@ -72,8 +67,8 @@ def relative_moduli(scene: Scene) -> tuple[float, ...]:
     body, counter = scene.body, scene.counterbody
     if counter is None or not counter.elastic:
         return (1.0 - body.poisson**2,)
-    ratio = body.young / required(counter.young)
-    first = 1.0 - body.poisson**2 + (1.0 - required(counter.poisson) ** 2) * ratio
+    ratio = body.young / stated(counter.young)
+    first = 1.0 - body.poisson**2 + (1.0 - stated(counter.poisson) ** 2) * ratio
     return first, first / ratio
 
 
@@ -97,12 +92,12 @@ def scales(scene: Scene) -> Scales:
     """
     loading, modulus = scene.loading, contact_modulus(scene)
     if loading.misfit_sphere:
-        radius = required(loading.radius)
-        return Scales(radius, required(loading.misfit) * radius, modulus, 1.0)
+        radius = stated(loading.radius)
+        return Scales(radius, stated(loading.misfit) * radius, modulus, 1.0)
     if loading.prescribed is not None:
-        radius = required(loading.radius)
-        return Scales(radius, np.pi * radius * required(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
-    force, counter = peak_force(scene), required(scene.counterbody)
+        radius = stated(loading.radius)
+        return Scales(radius, np.pi * radius * stated(loading.p0) / (2.0 * modulus), modulus, 4.0 / 3.0)
+    force, counter = peak_force(scene), stated(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape in PUNCHES:
         radius = radius_under_force(counter, force / modulus) if counter.shape == ROUNDED else radius
@@ -119,7 +114,7 @@ def scales(scene: Scene) -> Scales:
 def equivalent_radius(counter: CounterBody) -> float:
     """Radius of a sphere, a punch or a rounded edge; of an ellipsoid the geometric mean."""
     radii = counter.radii
-    return required(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
+    return stated(counter.radius) if radii is None else float(np.sqrt(radii[0] * radii[1]))
 
 
 def peak_force(scene: Scene) -> float:
@@ -132,8 +127,8 @@ def peak_force(scene: Scene) -> float:
     if loading.misfit_sphere:
         return 0.0
     if loading.prescribed is None:
-        return required(loading.force)
-    return 2.0 / 3.0 * np.pi * required(loading.radius) ** 2 * required(loading.p0)
+        return stated(loading.force)
+    return 2.0 / 3.0 * np.pi * stated(loading.radius) ** 2 * stated(loading.p0)
 
 
 def force_of_approach(scene: Scene, approach: float) -> float:
@@ -142,7 +137,7 @@ def force_of_approach(scene: Scene, approach: float) -> float:
 
     The yield stress is that at Tabor's representative strain 0.2 a/R.
     """
-    modulus, counter = contact_modulus(scene), required(scene.counterbody)
+    modulus, counter = contact_modulus(scene), stated(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape == "punch":
         return 2.0 * modulus * radius * approach
@@ -166,10 +161,10 @@ def force_of_rounded(scene: Scene, counter: CounterBody, approach: float) -> flo
     force = contact_modulus(scene) * force_at(counter, radius_at_approach(counter, approach))
     if scene.body.plasticity is None:
         return force
-    radius = required(counter.radius)
+    radius = stated(counter.radius)
     beyond = np.sqrt(2.0 * radius * approach)
     strength = scene.body.plasticity.strength().least(0.2 * beyond / radius)
-    return float(min(force, 3.0 * strength * np.pi * (required(counter.flat_radius) + beyond) ** 2))
+    return float(min(force, 3.0 * strength * np.pi * (stated(counter.flat_radius) + beyond) ** 2))
 
 
 def kinks_of(scene: Scene, units: Scales) -> Array:
@@ -190,20 +185,11 @@ def largest_mises(poisson: float) -> float:
 
 
 def plastic_radius(scene: Scene) -> float | None:
-    """Estimate the contact radius of a sphere on a plastic body.
+    """Estimate of the contact radius of a sphere, or an ellipsoid, on a plastic body over that of Hertz, 1 or
+    more (1 of a given pressure); None if nothing yields.
 
     Mean pressure of Johnson's expanding cavity (1985, Sec. 6.3), at most 3 Y, with the yield stress Y at
     Tabor's representative strain 0.2 a/R: p/Y = 2/3 (2 + ln((E* a/(Y R) + 4 (1 - 2 nu))/(6 (1 - nu)))).
-
-    Parameters
-    ----------
-    scene : Scene
-        With a sphere, an ellipsoid, or a given pressure, which keeps its radius.
-
-    Returns
-    -------
-    float or None
-        Radius over that of Hertz, 1 or more; None if nothing yields.
     """
     body, unit = scene.body, scales(scene)
     if body.plasticity is None or unit.peak_force == 0.0:
@@ -222,3 +208,31 @@ def plastic_radius(scene: Scene) -> float | None:
     )
     mean = strength * min(3.0, 2.0 / 3.0 * (2.0 + np.log(max(ratio, 1.0))))
     return float(max(1.0, np.sqrt(2.0 / 3.0 * peak / mean)))
+
+
+def radius_under_force(counter: CounterBody, force: float) -> float:
+    """Contact radius in m, F/E* = a^3/R [4/3 sin^3 t - cos t (t - sin t cos t)], cos t = b/a."""
+    return _radius(counter, lambda a, t: force_at(counter, a, t) < force)
+
+
+def radius_at_approach(counter: CounterBody, approach: float) -> float:
+    """Contact radius in m at an approach a b (tan t - t)/R."""
+    flat, radius = stated(counter.flat_radius), stated(counter.radius)
+    return _radius(counter, lambda a, t: a * flat * (np.tan(t) - t) / radius < approach)
+
+
+def force_at(counter: CounterBody, a: float, t: float | None = None) -> float:
+    """Force in N over E* at a contact radius in m; t: its angle."""
+    flat, radius = stated(counter.flat_radius), stated(counter.radius)
+    angle = np.arccos(min(1.0, flat / a)) if t is None else t
+    beyond = angle - np.sin(angle) * np.cos(angle)
+    return float(a**3 / radius * (4.0 / 3.0 * np.sin(angle) ** 3 - np.cos(angle) * beyond))
+
+
+def _radius(counter: CounterBody, smaller: Callable[[float, float], bool]) -> float:
+    """The radius b/cos t at which something that grows with it is no longer smaller than wanted."""
+    flat, low, high = stated(counter.flat_radius), 0.0, 0.5 * np.pi
+    for _ in range(HALVINGS):
+        t = 0.5 * (low + high)
+        low, high = (t, high) if smaller(flat / np.cos(t), t) else (low, t)
+    return float(flat / np.cos(low))

@@ -28,27 +28,11 @@ ELASTIC_CYCLE = "elastic: equal to cycle 1"
 class Step:
     """A step of the schedule that was solved.
 
-    Attributes
-    ----------
-    state : Equilibrium
-        The equilibrium at its end, or the last iterate of the part that did not converge.
-    work : Work
-        Counters of all its parts, also the discarded ones.
-    cuts : int
-        How often a part of it was halved.
-    cycle, number : int
-        Cycle and place in it, from 1.
-    unloads : bool
-        The step takes the load off.
-    note : str
-        What was done to it, in words.
-    attempts : tuple of Attempt
-        Residuals of all its parts, also the discarded ones.
-    dissipated : float
-        Energy in J, where that is asked for.
-    peeq_max : float or None
-        Largest accumulated plastic strain, of a step whose state holds no displacements and no history any
-        more (`forgotten`); None of others.
+    state: the equilibrium at its end, or the last iterate of the part that did not converge; work: counters
+    of all its parts, also the discarded ones; cuts: how often a part of it was halved; cycle, number: cycle
+    and place in it, from 1; unloads: it takes the load off; note: what was done to it, in words; attempts:
+    residuals of all its parts; dissipated: energy in J, where that is asked for; peeq_max: largest
+    accumulated plastic strain, of a step whose state is `forgotten`, None of others.
     """
 
     state: Equilibrium
@@ -178,11 +162,7 @@ def onward(model: ContactModel, record: Progressed) -> Progressed:
         step = advance(model, target.load, record.state)
         step = replace(step, note=f"cut into {step.cuts + 1} steps" if step.cuts else "")
     step = replace(
-        step,
-        work=step.work + target.spent,
-        cycle=target.cycle,
-        number=target.number,
-        unloads=target.unloads,
+        step, work=step.work + target.spent, cycle=target.cycle, number=target.number, unloads=target.unloads
     )
     return replace(record, targets=rest, steps=[*record.steps, step])
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Graded lines of tensor meshes; lengths in contact radii."""
+"""Graded lines of tensor meshes; lengths in contact radii, of a rough body in half sides of the patch."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -57,6 +58,32 @@ def two_sided(low: float, high: float, size: float, box: float, *, growth: float
 
 
 @dataclass(frozen=True)
+class Lines:
+    """Coordinates of the planes of a block, ascending; z from 0. half: the block ends at the plane y = 0."""
+
+    x: Array
+    y: Array
+    z: Array
+    half: bool
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of elements."""
+        return self.x.size - 1, self.y.size - 1, self.z.size - 1
+
+    @property
+    def share(self) -> float:
+        """Modelled part of every force."""
+        return 0.5 if self.half else 1.0
+
+    @cached_property
+    def areas(self) -> Array:
+        """(nx + 1, ny + 1) integrals of the surface shape functions."""
+        x, y = (0.5 * (np.diff(a, prepend=a[0]) + np.diff(a, append=a[-1])) for a in (self.x, self.y))
+        return np.outer(x, y)
+
+
+@dataclass(frozen=True)
 class Sizes:
     """Largest size of an element at a distance: `fine` to the first limit, then `coarse`."""
 
@@ -66,12 +93,10 @@ class Sizes:
 
     def __call__(self, distance: float) -> float:
         """Return the largest size at a distance."""
-        below = [
-            size
-            for size, limit in zip((self.fine, self.coarse), self.limits, strict=True)
-            if distance < limit
-        ]
-        return below[0] if below else np.inf
+        fine, coarse = self.limits
+        if distance < fine:
+            return self.fine
+        return self.coarse if distance < coarse else np.inf
 
 
 def marched(

@@ -19,6 +19,7 @@ from fem_reference.common.hertz import Scales
 from fem_reference.common.linear import NO_WORK
 from fem_reference.common.plan import Plan
 from fem_reference.common.plasticity import J2, CurveInUnits, History, Material, Parts
+from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import HERTZ_RISE, NO_LOAD, Load
 from sam.scene.yield_curve import Linear, Strength, YieldCurve
 
@@ -43,6 +44,11 @@ class ContactModel(ABC):
 
     on_axis: ClassVar[int] = 0
     """Number of candidates on an axis of symmetry, which have no area."""
+
+    @property
+    def centred(self) -> bool:
+        """Whether the middle of the contact is known to be in the origin."""
+        return True
 
     @property
     def part(self) -> float:
@@ -81,13 +87,13 @@ class ContactModel(ABC):
     def contact_area(self, state: Equilibrium) -> float:
         """Area of the contact in m^2."""
 
-    @abstractmethod
     def friction(self, state: Equilibrium) -> float:
         """Size of the tangential force over the normal one."""
+        return self.plan.sliding.coefficient
 
-    @abstractmethod
     def displacements(self, state: Equilibrium) -> Array:
-        """Displacements of the half-space."""
+        """Displacements of the half-space, the first of the bodies."""
+        return state.u[: self.body.size]
 
     @abstractmethod
     def contact_forces(self, state: Equilibrium) -> Array:
@@ -102,8 +108,12 @@ class ContactModel(ABC):
         """Whether anything at the outer boundary has yielded; peeq: as the stresses have it."""
 
     @abstractmethod
+    def size(self, state: Equilibrium) -> float:
+        """Radius or half-width of the contact, or of a circle of its area."""
+
     def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
-        """Whether the largest contact has too few elements."""
+        """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
+        return round(max(map(self.size, states)) * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS
 
     def stress(self, state: Equilibrium) -> Array:
         """Stress of the half-space at the Gauss points, in the units of the model."""

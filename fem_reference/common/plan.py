@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The plan of a scene: what a finite-element model solves, made once; the solver executes it and asks the
-scene nothing.
-
-Here is what the plans of both models share; `fem_reference.axisymmetric.planner` and
-`fem_reference.spatial.planner` make them. Loads no numerical library but numpy.
+"""The plan of a scene: what a finite-element model solves, made once by the planner of its geometry; the
+solver executes it and asks the scene nothing. Loads no numerical library but numpy.
 """
 
 from __future__ import annotations
@@ -14,21 +11,15 @@ from typing import Any, Self, TypeVar
 
 import numpy as np
 
+from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Bodies, Elastic, coating_of, expected_radius
-from fem_reference.common.hertz import Scales, peak_force, relative_moduli, required
+from fem_reference.common.hertz import Scales, peak_force, relative_moduli
 from fem_reference.common.refusals import Advice, advice_of
 from fem_reference.common.schedule import Schedule, Sliding, schedule_of
+from sam.scene import verdict
 from sam.scene.result import NO_FORCE, LeftOut, Stage, left_out_of
 from sam.scene.schema import Scene
-from sam.scene.verdict import (
-    VERDICT,
-    Judging,
-    counts_dissipation,
-    judging_of,
-    last_period,
-    periods_of,
-    reason_without,
-)
+from sam.scene.section import stated
 
 TRACTION, RETURN_MAP = "tangential traction", "return mapping and plastic history"
 LATER_CYCLES, ONE_STEP = "cycles after the first", "elastic: in one step"
@@ -66,13 +57,13 @@ class Plan:
     points: int
     stages: tuple[Stage, ...]
     advice: Advice
-    judging: Judging | None = None
+    judging: verdict.Judging | None = None
     dissipates: bool = False
     bare: Self | None = None
 
     def forgets(self, cycle: int) -> bool:
         """Whether no result reads the states inside a cycle: of a moving body, unless judged."""
-        judged = self.judging is not None and cycle in last_period(self.judging, self.schedule.cycles)
+        judged = self.judging is not None and cycle in verdict.last_period(self.judging, self.schedule.cycles)
         return self.sliding.moves and not judged
 
     @property
@@ -97,13 +88,13 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any
         expected=expected,
         interface=None if bodies.coating is None else bodies.coating.thickness,
         advice=advice_of(scene),
-        judging=judging_of(scene),
-        dissipates=counts_dissipation(scene),
+        judging=verdict.judging_of(scene),
+        dissipates=verdict.counts_dissipation(scene),
         **of_geometry,
     )
     if bodies.coating is None:
         return plan
-    bodies = bodies.without_coating()
+    bodies = replace(bodies, coating=None)
     schedule = steps_of(scene, units, bodies, sliding).of_bare_contact(not bodies.yields)
     return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
 
@@ -121,7 +112,7 @@ def bodies_of(scene: Scene, units: Scales) -> Bodies:
     plasticity, coating = scene.body.plasticity, scene.body.coating
     first, *others = relative_moduli(scene)
     elastic = [Elastic(first, scene.body.poisson)]
-    elastic += [Elastic(young, required(required(scene.counterbody).poisson)) for young in others]
+    elastic += [Elastic(young, stated(stated(scene.counterbody).poisson)) for young in others]
     bodies = Bodies(tuple(elastic), coating_of(scene, units))
     if coating is not None:
         bodies = replace(bodies, coating_yield=coating.yield_stress)
@@ -134,6 +125,23 @@ def steps_of(scene: Scene, units: Scales, bodies: Bodies, sliding: Sliding) -> S
     """The load schedule of a scene for these bodies."""
     elastic, unit = not bodies.yields, units.displacement
     return schedule_of(scene.loading, units.peak_force, elastic=elastic, sliding=sliding, unit=unit)
+
+
+def section_of(scene: Scene, x: Array, z: Array, words: str) -> dict[str, Any]:
+    """Sizes and stages of a plane tensor mesh of 8-node quadrilaterals, as fields of a plan; x, z: lines of
+    each body; words: of the mesh.
+    """
+    counter, columns, rows = scene.counterbody, x.size - 1, z.size - 1
+    bodies = 2 if counter is not None and counter.elastic else 1
+    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
+    sizes = {"elements": bodies * columns * rows, "unknowns": 2 * bodies * nodes}
+    stages = [Stage("mesh", True, words, {**sizes, "bodies": bodies})]
+    if bodies > 1:
+        words = "elastic: that of the body, turned over"
+        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
+    points = 4 * columns * rows
+    stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
+    return {**sizes, "points": points, "stages": stages_of(scene, stages, stresses)}
 
 
 def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Stage, ...]:
@@ -152,9 +160,9 @@ def stages_of(scene: Scene, mesh: Sequence[Stage], stresses: Stage) -> tuple[Sta
     if scene.loading.force == 0.0:
         solving, bare = ([Stage(stage.stage, False, NO_FORCE) for stage in some] for some in (solving, bare))
     stages += [*solving, stresses]
-    if yields and not reason_without(scene):
+    if yields and not verdict.reason_without(scene):
         words = "strains of the unloaded body after each period"
-        stages.append(Stage(VERDICT, True, words, {"periods": periods_of(scene)}))
+        stages.append(Stage(verdict.VERDICT, True, words, {"periods": verdict.periods_of(scene)}))
     return (*stages, *bare, *(Stage(stage, False, reason) for stage, reason in _left_out(scene)))
 
 
@@ -195,7 +203,8 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
     more = ", no body.coating.yield_stress" if coating else ""
     rigid = scene.counterbody is not None and not scene.counterbody.elastic
     again = not yields and scene.loading.cycles > 1 and not alternating
-    unload, reason = scene.loading.unload, reason_without(scene)
+    unload, reason = scene.loading.unload, verdict.reason_without(scene)
+    of_sam = "of the semi-analytical model"
     stages = (
         (not coating, "film elements", "no [body.coating]"),
         (not scene.coefficient, TRACTION, "friction.coefficient is 0" if scene.friction else "no [friction]"),
@@ -203,20 +212,12 @@ def _left_out(scene: Scene) -> list[tuple[str, str]]:
         (not yields, RETURN_MAP, f"the body is elastic: no [body.plasticity]{more}"),
         (yields and not back_stresses, "back-stresses", "no [body.plasticity.kinematic]"),
         (rigid, "mesh of the counter-body", "rigid: no counterbody.young and counterbody.poisson"),
-        (
-            scene.solver.extrapolate,
-            "extrapolation",
-            "solver.extrapolate is a method of the semi-analytical model",
-        ),
-        (
-            scene.solver.operator is not None,
-            "operator",
-            "solver.operator is of the semi-analytical model",
-        ),
+        (scene.solver.extrapolate, "extrapolation", f"solver.extrapolate is a method {of_sam}"),
+        (scene.solver.operator is not None, "operator", f"solver.operator is {of_sam}"),
         (not unload, "unloading", "loading.unload is false"),
         (unload and not yields, "unloading steps", "elastic: unloading in one step is exact"),
         (again, LATER_CYCLES, "elastic: every cycle equals the first"),
-        (reason, VERDICT, reason or ""),
+        (reason, verdict.VERDICT, reason or ""),
     )
     return [(stage, why) for left_out, stage, why in stages if left_out]
 

@@ -18,7 +18,7 @@ caller.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -223,13 +223,17 @@ class Parts:
         elements, material = self.parts[0]
         return elements.size, material.shape[1]
 
+    def _whole(self, of: Callable[[J2, Bools], Array], *leading: int) -> Array:
+        """(*leading, n_elements, n_points) of the values of each material at its elements."""
+        whole = np.empty((*leading, *self.shape))
+        for elements, material in self.parts:
+            whole[..., elements, :] = of(material, elements)
+        return whole
+
     @property
     def yield_strain(self) -> Array:
         """Initial yield stress over Young's modulus at every point."""
-        strain = np.empty(self.shape)
-        for elements, material in self.parts:
-            strain[elements] = material.yield_strain
-        return strain
+        return self._whole(lambda material, _: material.yield_strain)
 
     @property
     def back_stresses(self) -> int:
@@ -255,24 +259,16 @@ class Parts:
 
     def dissipated(self, before: History, after: History) -> Array:
         """Energy that a step dissipates at every point, (n_elements, n_points)."""
-        energy = np.empty_like(after.peeq)
-        for elements, material in self.parts:
-            energy[elements] = material.dissipated(before.of(elements), after.of(elements))
-        return energy
+        return self._whole(lambda material, at: material.dissipated(before.of(at), after.of(at)))
 
     def back_stress(self, history: History) -> Array:
         """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
-        total = np.empty_like(history.plastic_strain)
-        for elements, material in self.parts:
-            total[:, elements] = material.back_stress(history.of(elements))
-        return total
+        components = len(history.plastic_strain)
+        return self._whole(lambda material, at: material.back_stress(history.of(at)), components)
 
     def excess(self, stress: Array, history: History) -> Array:
         """(q - Y)/Y at every point; -1 where nothing ever yields."""
-        excess = np.empty_like(history.peeq)
-        for elements, material in self.parts:
-            excess[elements] = material.excess(stress[:, elements], history.of(elements))
-        return excess
+        return self._whole(lambda material, at: material.excess(stress[:, at], history.of(at)))
 
 
 Material = J2 | Parts

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from fem_reference.common.plasticity import History
 from sam.scene.result import EXCEEDING, STRAINED
+from sam.scene.yield_curve import Kinks
 
 Peak = tuple[float, float | None]
 """A largest value and its depth in m, None if all are zero."""
@@ -28,6 +30,28 @@ def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth
         others = [other for j, other in enumerate(z) if j != i]
         total = total + value * np.prod([(depth - other) / (place - other) for other in others], axis=0)
     return total
+
+
+def plastic_fields(
+    history: History | None, stress: Array, unit: float, of: Callable[[Array], Array]
+) -> tuple[Array, Array | None]:
+    """Accumulated plastic strain, and the plastic strain as a tensor, None of an elastic body, where a stress
+    (n, ...) is. unit: of strain; of: from the Gauss points (..., n_elements, n_points) to those places.
+    """
+    if history is None:
+        return np.zeros(stress.shape[1:]), None
+    shear = np.repeat([1.0, 0.5], [3, len(stress) - 3]).reshape(-1, *[1] * (stress.ndim - 1))
+    return of(history.peeq) * unit, of(history.plastic_strain) * unit * shear
+
+
+def over_depth(z: Array, values: Array, k: int, kinks: Kinks) -> Peak:
+    """Value and depth of the top of the parabola through values (nz,) at z[k] and its neighbours, the largest
+    at k; not across a kink of the yield stress, where a soft layer strains most: it would overshoot.
+    """
+    near = slice(k - 1, k + 2)
+    if not 0 < k < z.size - 1 or np.ptp(kinks.interval(z[near])):
+        return float(values[k]), float(z[k])
+    return parabola_peak(z[near], values[near])
 
 
 def exceeded_strain(peeq: Array, weights: Array) -> float | None:

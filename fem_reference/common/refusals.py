@@ -12,15 +12,7 @@ import numpy as np
 
 from fem_reference.common.bodies import expected_radius
 from fem_reference.common.hertz import scales
-from sam.scene.remedies import (
-    either,
-    finer_cells,
-    finer_mesh,
-    larger_box,
-    less_friction,
-    less_load,
-    more_steps,
-)
+from sam.scene import remedies
 from sam.scene.result import Status
 from sam.scene.schema import Scene
 from sam.scene.section import Problem, spelling
@@ -47,28 +39,20 @@ def refuse(problems: Sequence[Problem]) -> None:
         raise UnsupportedScene("; ".join(map(str, problems)))
 
 
-def shape_problems(scene: Scene, shapes: Sequence[str], model: str) -> list[Problem]:
-    """A counter-body of a shape that `model` has not, or a patch that repeats."""
-    if scene.grid is not None and scene.grid.periodic is not None:
-        allowed = f"the {model} finite-element model allows a patch that does not repeat: leave it out"
-        return [Problem("grid.periodic", spelling(scene.grid.periodic), allowed)]
+def problems_of(scene: Scene, shapes: Sequence[str], model: str) -> list[Problem]:
+    """What no model allows, wear, chemical films, patches that repeat, incompressible bodies, which the
+    elements have no pressure for; and a counter-body of a shape that `model` has not.
+    """
+    allows, problems = f"the {model} finite-element model allows", []
     shape = scene.counterbody.shape if scene.counterbody else None
-    if shape in (*shapes, None):
-        return []
-    allowed = " or ".join(spelling(name) for name in shapes)
-    return [
-        Problem("counterbody.shape", spelling(shape), f"the {model} finite-element model allows {allowed}")
-    ]
-
-
-def incompressible(key: str, poisson: float | None) -> list[Problem]:
-    """An incompressible body, which the elements have no pressure for."""
-    return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]
-
-
-def running_in_problems(scene: Scene) -> list[Problem]:
-    """Wear and chemical films, which no finite-element model has."""
-    problems = []
+    if scene.grid is not None and scene.grid.periodic is not None:
+        words = f"{allows} a patch that does not repeat: leave it out"
+        problems.append(Problem("grid.periodic", spelling(scene.grid.periodic), words))
+    elif shape not in (*shapes, None):
+        words = " or ".join(spelling(name) for name in shapes)
+        problems.append(Problem("counterbody.shape", spelling(shape), f"{allows} {words}"))
+    for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
+        problems += [] if body is None else incompressible(key, body.poisson)
     if scene.friction is not None and scene.friction.film:
         words = 'the finite-element models allow "constant", in three dimensions also "map"'
         problems.append(Problem("friction.law", spelling(scene.friction.law), words))
@@ -76,6 +60,11 @@ def running_in_problems(scene: Scene) -> list[Problem]:
         words = "the finite-element models allow a surface that does not wear: remove [wear]"
         problems.append(Problem("wear.strain_limit", spelling(scene.wear.strain_limit), words))
     return problems
+
+
+def incompressible(key: str, poisson: float | None) -> list[Problem]:
+    """A body without change of volume."""
+    return [] if poisson is None or poisson < 0.5 else [Problem(f"{key}.poisson", spelling(poisson), POISSON)]
 
 
 def coating_problems(scene: Scene) -> list[Problem]:
@@ -100,9 +89,9 @@ def box_problems(scene: Scene, reach: float, contact: str) -> list[Problem]:
     """A box that does not hold the uniform part of the mesh, of the size `reach` in Hertz radii."""
     if reach < scene.fem.box:
         return []
-    remedies = either(larger_box(scene), less_load(scene))
+    either = remedies.either(remedies.larger_box(scene), remedies.less_load(scene))
     radii = "radii" if scene.loading.misfit_sphere else "Hertz radii"
-    words = f"more than {reach:.3g} {radii} for this {contact}: {remedies}"
+    words = f"more than {reach:.3g} {radii} for this {contact}: {either}"
     return [Problem("fem.box", spelling(scene.fem.box), words)]
 
 
@@ -119,25 +108,25 @@ FEWEST_NODES = 28
 
 def message_of(scene: Scene, status: Status) -> str:
     """What to change for a status, in words; empty for a converged solve."""
-    rough = scene.patch_surface is not None
+    rough, less = scene.patch_surface is not None, remedies.less_load(scene)
     match status:
         case Status.NOT_CONVERGED if rough:
-            full = f"{less_load(scene)} if all of it touches"
-            return f"the contact iteration did not settle: {either(finer_cells(scene), full)}"
+            what = remedies.either(remedies.finer_cells(scene), f"{less} if all of it touches")
+            return f"the contact iteration did not settle: {what}"
         case Status.NOT_CONVERGED:
             return "the contact iteration did not settle: change fem.cells_per_radius"
         case Status.CONTACT_AT_GRID_EDGE:
-            return f"the contact reaches the edge of the fine mesh: {less_load(scene)}"
+            return f"the contact reaches the edge of the fine mesh: {less}"
         case Status.UNDER_RESOLVED if rough:
-            return f"fewer than {FEWEST_NODES} surface nodes in contact: {finer_cells(scene)}"
+            return f"fewer than {FEWEST_NODES} surface nodes in contact: {remedies.finer_cells(scene)}"
         case Status.UNDER_RESOLVED:
-            return f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: {finer_mesh(scene)}"
+            what = remedies.finer_mesh(scene)
+            return f"fewer than {FEWEST_ELEMENTS} elements in the contact radius: {what}"
         case Status.PLASTIC_ZONE_AT_GRID_EDGE:
-            return (
-                f"the plastic zone reaches the outer boundary: {either(larger_box(scene), less_load(scene))}"
-            )
+            what = remedies.either(remedies.larger_box(scene), less)
+            return f"the plastic zone reaches the outer boundary: {what}"
         case Status.STEP_CUT_LIMIT:
-            what = either(more_steps(scene), less_load(scene))
+            what = remedies.either(remedies.more_steps(scene), less)
             return f"a load step did not converge, halved {MOST_CUTS} times: {what}"
     return status.advice  # of a status that no solve here ends in
 
@@ -175,5 +164,6 @@ def advice_of(scene: Scene) -> Advice:
         most = coating.yield_stress / (np.sqrt(3.0) * mu)
         words = f"the film carries no pressure beyond {most:.4g} Pa with friction.coefficient = {mu:g}"
         advice[Status.STEP_CUT_LIMIT] += f"; {words}"
-    remedies = either("raise body.coating.yield_stress", less_load(scene), less_friction(scene))
-    return Advice(advice, flows=f"{words}: {remedies}")
+    others = remedies.less_load(scene), remedies.less_friction(scene)
+    what = remedies.either("raise body.coating.yield_stress", *others)
+    return Advice(advice, flows=f"{words}: {what}")

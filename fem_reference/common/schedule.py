@@ -123,8 +123,7 @@ class Schedule:
             target
             if target.load.approach is None
             else replace(
-                target,
-                load=replace(target.load, force=forces[target.cycle, target.number], approach=None),
+                target, load=replace(target.load, force=forces[target.cycle, target.number], approach=None)
             )
             for target in self.targets
         ]

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The way from a scene to a result, the same for both geometries: plan, model, load steps, verdict,
-quantities, tables.
-
-What differs is a `Method` of each geometry.
+"""The way from a scene to a result, plan, model, load steps, verdict, quantities, tables: the same for all
+geometries, which differ by a `Method`.
 """
 
 from __future__ import annotations
@@ -22,7 +20,14 @@ from fem_reference.common.loading import Progressed, Step, run
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plan import Plan
 from fem_reference.common.recovery import Peak, exceeded_strain
-from fem_reference.common.tables import element_fields, peak_steps, step_tables, verdict_summary
+from fem_reference.common.tables import (
+    Surface,
+    element_fields,
+    peak_steps,
+    stacked,
+    step_tables,
+    verdict_summary,
+)
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
     COST,
@@ -31,7 +36,6 @@ from sam.scene.result import (
     QUANTITIES,
     UNLOADED,
     FieldMesh,
-    GridFields,
     Progress,
     Result,
     Status,
@@ -114,10 +118,11 @@ class Method(Generic[P, M, S]):
 
     setups: what a set-up of the linear solver is called; plan, build: of a scene, of a plan; stresses: of a
     state; largest_mises, largest_peeq: with their depths; largest_in_layer: von Mises stress of the coating
-    (True) or below it; contact_quantities: at the peak; residual_quantities: of the surface after
-    unloading; tables: of the states by name; field_mesh, surface: of one state; discretisation: in
-    SI units; warnings: what a reader of the result must know; of_path: tables, and columns of the history,
-    that a counter-body that moves adds, and quantities.
+    (True) or below it; contact_quantities: at the peak, beside those of all geometries; axis, plane: tables
+    of a state and its name; field_mesh, surface: of one state; discretisation: in SI units; plastic_shear: in
+    m, what plastic shear moves the surface along x, -integral of 2 e_p_xz over z, at places x in m; further:
+    tables of all states by name; warnings: what a reader of the result must know; of_path: tables, and
+    columns of the history, that a counter-body that moves adds, and quantities.
     """
 
     setups: str
@@ -128,11 +133,13 @@ class Method(Generic[P, M, S]):
     largest_peeq: Callable[[S], Peak]
     largest_in_layer: Callable[[S, bool], Peak]
     contact_quantities: Callable[[M, Equilibrium], Quantities]
-    residual_quantities: Callable[[M, Equilibrium, S], Quantities]
-    tables: Callable[[M, Mapping[str, Equilibrium], Mapping[str, S]], dict[str, Table]]
+    axis: Callable[[str, S], Table]
+    plane: Callable[[str, S], Table]
     field_mesh: Callable[[M, Equilibrium, S], FieldMesh]
-    surface: Callable[[M, Equilibrium], GridFields]
+    surface: Callable[[M, Equilibrium], Surface]
     discretisation: Callable[[M], dict[str, object]]
+    plastic_shear: Callable[[M, S, Array | float], Array | float] = lambda *_of_state: 0.0
+    further: Callable[[M, Mapping[str, Equilibrium], Mapping[str, S]], dict[str, Table]] = lambda *_states: {}
     warnings: Callable[[M], tuple[str, ...]] = lambda _model: ()
     of_path: Callable[
         [M, Sequence[Step], Mapping[str, Equilibrium], Mapping[str, S]], tuple[dict[str, Table], Quantities]
@@ -142,53 +149,100 @@ class Method(Generic[P, M, S]):
         """Return the largest accumulated plastic strain of a state, as in the quantities."""
         return self.largest_peeq(self.stresses(model, state))[0] if state.yielded else 0.0
 
+    def tables(
+        self, model: M, states: Mapping[str, Equilibrium], fields: Mapping[str, S]
+    ) -> dict[str, Table]:
+        """Return the tables of the states, one below the other."""
+        lines = []
+        for name, state in states.items():
+            surface = self.surface(model, state)
+            lines.append(surface.table(name, self.plastic_shear(model, fields[name], surface.x)))
+        return {
+            "axis": stacked([self.axis(name, fields[name]) for name in states]),
+            "line": stacked(lines),
+            "plane": stacked([self.plane(name, fields[name]) for name in states]),
+            **self.further(model, states, fields),
+        }
 
-def solve(
-    method: Method[P, M, S],
-    scene: Scene,
-    *,
-    progress: Progress | None,
-    checkpoint: Keep | None,
-    start: Checkpoint | None,
-    plan: P | None = None,
-) -> Result:
-    """Solve a scene with the method of a geometry; parameters as of `fem_reference.solve`."""
-    plan = method.plan(scene) if plan is None else plan
-    check_model(start, plan.model)
-    clock = Clock(start)
-    model = method.build(plan)
-    clock.ready()
+    def solve(
+        self,
+        scene: Scene,
+        progress: Progress | None = None,
+        checkpoint: Keep | None = None,
+        start: Checkpoint | None = None,
+        *,
+        plan: P | None = None,
+    ) -> Result:
+        """Solve a scene by finite elements.
 
-    def keep(record: object, part: Progressed, before: int = 0, after: int = 0) -> None:
-        if checkpoint:
-            done = before + len(part.steps)
-            total = done + len(part.targets) + after
-            checkpoint(Checkpoint.of(plan.model, record, done=done, total=total, cost=clock.times()))
+        Parameters
+        ----------
+        scene : Scene
+            One that `check` of the model allows.
+        progress : callable, optional
+            Called as ``progress("contact", done, total)`` after each load step towards the peak.
+        checkpoint : callable, optional
+            Called with a Checkpoint after each step of the schedule of a body that can yield.
+        start : Checkpoint, optional
+            One of them, of the same scene, to go on from there to the same result.
+        plan : optional
+            What `plan` made of the scene; without it that is done here.
 
-    if plan.bare is not None:
-        pair = start.record(Pair) if start else Pair()
-        solved = coated_then_bare(model, method.build(plan.bare), pair, progress=progress, keep=keep)
-    else:
-        steps = run(
-            model,
-            plan.schedule,
-            progress=progress,
-            keep=lambda record: keep(record, record),
-            begin=start.record(Progressed) if start else None,
-            strained=partial(method.peeq_max, model),
-        )
-        solved = Solved(model, steps)
-    return result_of(method, solved, clock)
+        Returns
+        -------
+        Result
+            In SI units; its status says whether it may be used. ``p_max_Pa`` is the largest nodal pressure:
+            the multiplier of a surface node over the area that belongs to it; on an axis of symmetry it is
+            extrapolated from the neighbours. In plane strain displacements and the approach count from the
+            surface at half the length of the cylinder beside its axis under the same line force.
 
+        Raises
+        ------
+        UnsupportedScene
+            For what the model cannot represent, see `check`.
+        ValueError
+            For a `start` of another model.
+        """
+        plan = self.plan(scene) if plan is None else plan
+        check_model(start, plan.model)
+        clock = Clock(start)
+        model = self.build(plan)
+        clock.ready()
 
-def load_steps(method: Method[P, M, S], scene: Scene, record: Checkpoint | None) -> tuple[M, list[Step]]:
-    """The model of a scene and its steps; parameters as of `fem_reference.load_steps`."""
-    plan = method.plan(scene)
-    model = method.build(plan)
-    if record is None:
-        return model, run(model, plan.schedule)
-    reached = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
-    return model, [] if reached is None else reached.steps
+        def keep(record: object, part: Progressed, before: int = 0, after: int = 0) -> None:
+            if checkpoint:
+                done = before + len(part.steps)
+                total = done + len(part.targets) + after
+                checkpoint(Checkpoint.of(plan.model, record, done=done, total=total, cost=clock.times()))
+
+        if plan.bare is not None:
+            pair = start.record(Pair) if start else Pair()
+            solved = coated_then_bare(model, self.build(plan.bare), pair, progress=progress, keep=keep)
+        else:
+            steps = run(
+                model,
+                plan.schedule,
+                progress=progress,
+                keep=lambda record: keep(record, record),
+                begin=start.record(Progressed) if start else None,
+                strained=partial(self.peeq_max, model),
+            )
+            solved = Solved(model, steps)
+        return result_of(self, solved, clock)
+
+    def load_steps(self, scene: Scene, record: Checkpoint | None = None) -> tuple[M, list[Step]]:
+        """Return the model of a scene and its load steps, for a-posteriori checks of every state.
+
+        record: of the last step of a solve; without it the steps are taken again, of a coated contact its own
+        alone. The steps go up to the first that did not converge; of a record of a counter-body that moves
+        those inside a pass are without displacements and strains. UnsupportedScene as of `solve`.
+        """
+        plan = self.plan(scene)
+        model = self.build(plan)
+        if record is None:
+            return model, run(model, plan.schedule)
+        reached = record.record(Progressed) if plan.bare is None else record.record(Pair).coated
+        return model, [] if reached is None else reached.steps
 
 
 def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Result:
@@ -208,7 +262,10 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
     of_steps = step_tables(model, steps, partial(method.peeq_max, model))
     quantities = quantities_of(method, model, states, fields)
     quantities |= coated_quantities(method, solved, states[first])
-    of_path, path_quantities = method.of_path(model, steps, states, fields)
+    of_path, path_quantities = (
+        method.of_path(model, steps, states, fields) if plan.sliding.moves else ({}, {})
+    )
+    sizes = {"bodies": len(plan.bodies.elastic), "elements": plan.elements, "dofs": plan.unknowns}
     history = {**of_steps.pop("history"), **of_path.pop("history", {})}
     return Result(
         model=plan.model,
@@ -217,9 +274,9 @@ def result_of(method: Method[P, M, S], solved: Solved[M], clock: Clock) -> Resul
         tables={"history": history, **method.tables(model, states, fields), **of_path, **of_steps},
         fields=bodies[first],
         bodies=bodies,
-        grids={name: {"surface": method.surface(model, state)} for name, state in states.items()},
+        grids={name: {"surface": method.surface(model, state).grid()} for name, state in states.items()},
         left_out=plan.left_out,
-        discretisation=method.discretisation(model),
+        discretisation=sizes | method.discretisation(model),
         certificate=certificate(model, states[first]),
         cost=cost(solved.steps + solved.bare_steps, method.setups, clock),
         message="; ".join(filter(None, (message, steps[-1].state.ending))),
@@ -322,12 +379,23 @@ def quantities_of(
         "friction_coefficient": model.friction(peak),
         "wear_volume_m3": 0.0,
         "peeq_p95": strain,
+        "force_N": model.plan.force * model.share(peak),
+        "contact_area_m2": model.contact_area(peak),
         **method.contact_quantities(model, peak),
     }
+    surface, slides = method.surface(model, peak), model.plan.sliding.coefficient > 0.0
+    if model.centred:
+        values["p_center_Pa"] = surface.centre(surface.pressure)
+        values["tangential_displacement_center_m"] = surface.centre(surface.u[0]) if slides else None
     if UNLOADED in states:
         after = fields[UNLOADED]
         values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
-        values |= method.residual_quantities(model, states[UNLOADED], after)
+        surface = method.surface(model, states[UNLOADED])
+        if model.centred:
+            values["residual_uz_center_m"] = surface.centre(surface.u[2])
+        if model.centred and slides:
+            values["residual_ux_center_m"] = surface.centre(surface.u[0])
+            values["plastic_shear_center_m"] = float(method.plastic_shear(model, after, 0.0))
     return {name: values.get(name) for name in QUANTITIES}
 
 

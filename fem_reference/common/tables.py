@@ -6,6 +6,7 @@ verdict on repeated loading, from the plastic histories of the unloaded states t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,28 +17,19 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
+from sam.scene import verdict
 from sam.scene.result import (
     BACK_STRESS,
     CYCLES,
     DISSIPATED,
     FRICTION_SIGN,
     HISTORY,
+    LINE,
     LOOPS,
     FieldMesh,
+    GridFields,
     Table,
     residual_table,
-)
-from sam.scene.verdict import (
-    Judging,
-    Period,
-    Verdict,
-    cell_fields,
-    last_period,
-    loop_places,
-    norm_of,
-    summary,
-    verdict_columns,
-    verdict_on,
 )
 
 
@@ -45,6 +37,66 @@ def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
     """Table from its columns in file order; a single number or text is repeated in every row."""
     rows = max(np.size(value) for value in values)
     return {name: np.broadcast_to(value, rows).copy() for name, value in zip(names, values, strict=True)}
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The surface nodes (nx, ny) of a state, ny = 1 of a section.
+
+    x, y: their lines in m; pressure: in Pa; ratio: tangential over normal traction, None without friction;
+    gap: in m, not finite where there is none; u: displacements (3, nx, ny) in m.
+    """
+
+    x: Array
+    y: Array
+    pressure: Array
+    ratio: Array | float | None
+    gap: Array
+    u: Array
+
+    @classmethod
+    def of_section(cls, model: ContactModel, state: Equilibrium, x: Array, gap: Array) -> Surface:
+        """That of a section, whose nodes are at x (nx,); gap: (nx,), both in the units of the model."""
+        unit, u, none = model.scales, model.displacements(state), np.zeros(x.size)
+        ux, uz = (u[model.body.boundary_dofs("surface", component)] for component in (0, 1))
+        ratio = state.load.ratio if model.plan.sliding.coefficient else None
+        pressure = (model.nodal_pressure(state) * unit.pressure)[:, None]
+        moved = np.stack([ux, none, uz])[..., None] * unit.displacement
+        return cls(x * unit.length, np.zeros(1), pressure, ratio, gap[:, None] * unit.displacement, moved)
+
+    def on_plane(self, values: Array) -> Array:
+        """(nx,) at y = 0 of values (nx, ny)."""
+        return at_zero_line(values, self.y)
+
+    def centre(self, values: Array) -> float:
+        """Value in the origin of those (nx, ny)."""
+        return float(at_zero_line(self.on_plane(values), self.x))
+
+    def table(self, state: str, plastic_shear: Array | float) -> Table:
+        """The nodes at y = 0; NaN without a gap, and without friction of what belongs to that."""
+        gap = self.on_plane(self.gap)
+        pressure, slides = self.on_plane(self.pressure), self.ratio is not None
+        traction = self.on_plane(self.ratio * self.pressure) if self.ratio is not None else 0.0
+        values = [state, self.x, pressure, traction, np.where(np.isfinite(gap), gap, np.nan)]
+        ux, uz = (self.on_plane(self.u[component]) for component in (0, 2))
+        return columns(LINE, [*values, uz, *((ux, plastic_shear) if slides else (np.nan, np.nan))])
+
+    def grid(self) -> GridFields:
+        """Pressure, displacement, friction, and the gap where all of it is finite."""
+        points = {"p_Pa": self.pressure, "displacement_m": self.u}
+        if self.ratio is not None:
+            touching = self.pressure > 0.0
+            points |= {"qx_Pa": self.ratio * self.pressure, "friction": np.abs(self.ratio) * touching}
+        if np.isfinite(self.gap).all():
+            points["gap_m"] = self.gap
+        flat = {name: values[..., None] for name, values in points.items()}
+        return GridFields(self.x, self.y, np.zeros(1), flat)
+
+
+def at_zero_line(values: Array, line: Array) -> Array:
+    """Values at zero of those (..., n) on the lines of `line` (n,), or the mean of both sides."""
+    zero = int(np.searchsorted(line, 0.0))
+    return values[..., zero] if line[zero] == 0.0 else 0.5 * (values[..., zero - 1] + values[..., zero])
 
 
 def plane_mesh(
@@ -61,14 +113,9 @@ def plane_mesh(
     u = model.displacements(state) * unit.displacement
     ux, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
 
-    def six(tensor: Array) -> Array:
-        out = np.zeros((tensor.shape[1], 6))
-        out[:, AXISYMMETRIC] = tensor.T
-        return out
-
-    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"])}
+    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"]).T}
     if "peeq" in cells:
-        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"])}
+        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"]).T}
     return FieldMesh(
         points=np.stack([x, np.zeros(x.size), z], axis=1) * unit.length,
         cells={"quad": mesh.t.T.copy()},
@@ -99,7 +146,7 @@ def step_tables(model: ContactModel, steps: Sequence[Step], peeq_max: Strained) 
             spent = [sum(step.dissipated for step in steps if step.cycle == cycle) for cycle in cycles]
             table |= {DISSIPATED: spent}  # J
         if (judging := model.plan.judging) is not None:
-            table |= verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
+            table |= verdict.verdict_columns(cycles, verdicts_of(model, steps, judging), judging.period)
         out["cycles"] = table
     return out
 
@@ -147,8 +194,11 @@ def peak_steps(steps: Sequence[Step]) -> list[Step]:
     return [step for step in peaks.values() if step.state.converged]
 
 
-AXISYMMETRIC = [0, 1, 2, 4]
-"""Where rr, tt, zz, rz are among six components in the plane y = 0."""
+def six(field: Array) -> Array:
+    """(6, ...) components of a tensor (4 or 6, ...): rr, tt, zz, rz in the plane y = 0 of six."""
+    out = np.zeros((6, *field.shape[1:]))
+    out[[0, 1, 2, 4] if len(field) == 4 else slice(None)] = field
+    return out
 
 
 def _yield_strain(model: ContactModel) -> Array:
@@ -158,19 +208,21 @@ def _yield_strain(model: ContactModel) -> Array:
     return model.scales.strain * model.problem.material.yield_strain.ravel()
 
 
-def verdicts_of(model: ContactModel, steps: Sequence[Step], judging: Judging) -> list[Verdict]:
+def verdicts_of(
+    model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
+) -> list[verdict.Verdict]:
     """After each period that was finished: of the steps of a contact whose body yields."""
     histories, periods = _periods_of(model, steps, judging)
     strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
-        verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
+        verdict.verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
         for number, after in enumerate(histories, start=1)
     ]
 
 
 def _periods_of(
-    model: ContactModel, steps: Sequence[Step], judging: Judging
-) -> tuple[list[History], list[Period]]:
+    model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
+) -> tuple[list[History], list[verdict.Period]]:
     """The histories at the ends of finished periods, and what each period added."""
     last = {
         target.cycle: target.number
@@ -197,7 +249,7 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
         return {}
-    cycles, unit = last_period(judging, model.plan.schedule.cycles), model.scales
+    cycles, unit = verdict.last_period(judging, model.plan.schedule.cycles), model.scales
     end = max(step.number for step in steps if step.cycle == cycles.start - 1)
     wanted = [
         step for step in steps if step.cycle in cycles or (step.cycle, step.number) == (cycles.start - 1, end)
@@ -205,24 +257,19 @@ def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]
     coordinates = model.body.points.reshape(len(model.body.points), -1) * unit.length
     x, *across, z = coordinates
     y = across[0] if across else 0 * x
-    rows = []
-    for number, at in enumerate(loop_places(periods[-2].accumulated, histories[-2].peeq.ravel()), start=1):
+    rows, points = [], model.body.weights.shape[1]
+    places = verdict.loop_places(periods[-2].accumulated, histories[-2].peeq.ravel())
+    for number, at in enumerate(places, start=1):
+        point = np.s_[:, *divmod(int(at), points)]
         for step in wanted:
-            stress = _six_at(model.stress(step.state) * unit.pressure, at)
+            stress = six(model.stress(step.state)[point] * unit.pressure)
             if (history := step.state.history) is None:
                 continue
-            strain = _six_at(history.plastic_strain * unit.strain, at) / np.array([1, 1, 1, 2, 2, 2])
+            strain = six(history.plastic_strain[point] * unit.strain) / np.repeat([1, 2], 3)
             peeq = unit.strain * float(history.peeq.ravel()[at])
             values = (number, x[at], y[at], z[at], step.cycle, step.number, peeq)
             rows.append((*values, *stress.tolist(), *strain.tolist()))
     return {name: [row[k] for row in rows] for k, name in enumerate(LOOPS)}
-
-
-def _six_at(field: Array, at: int) -> Array:
-    """Six components of a field (n, n_elements, n_points) at a point; in axial symmetry y is around."""
-    six, values = np.zeros(6), field.reshape(len(field), -1)[:, at]
-    six[AXISYMMETRIC if len(values) == 4 else slice(None)] = values
-    return six
 
 
 def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step]) -> dict[str, Array]:
@@ -233,13 +280,11 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
         return out
     if material.back_stresses:
         back = material.back_stress(state.history) * model.scales.pressure
-        out[BACK_STRESS] = np.zeros((len(weights), 6))
-        mean = (back * weights).sum(axis=-1) / weights.sum(axis=-1)
-        out[BACK_STRESS][:, AXISYMMETRIC if len(back) == 4 else slice(None)] = mean.T
+        out[BACK_STRESS] = six((back * weights).sum(axis=-1) / weights.sum(axis=-1)).T
     histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
     if judging is None or not periods:
         return out
-    for name, values in cell_fields(
+    for name, values in verdict.cell_fields(
         periods, histories[-1].peeq.ravel(), _yield_strain(model), judging
     ).items():
         points = values.reshape(weights.shape)
@@ -248,12 +293,12 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     return out
 
 
-def _added(before: History, after: History, unit: float) -> Period:
+def _added(before: History, after: History, unit: float) -> verdict.Period:
     """What a period added; the shears of a strain stand for twice the tensor."""
     strain = unit * (after.plastic_strain - before.plastic_strain).reshape(len(after.plastic_strain), -1)
     tensor = np.zeros((6, strain.shape[1]))
     tensor[:3], tensor[3 : len(strain)] = strain[:3], strain[3:] / 2.0
-    return Period(unit * (after.peeq - before.peeq).ravel(), norm_of(tensor), tensor)
+    return verdict.Period(unit * (after.peeq - before.peeq).ravel(), verdict.norm_of(tensor), tensor)
 
 
 def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, Any] | None:
@@ -262,4 +307,4 @@ def verdict_summary(model: ContactModel, steps: Sequence[Step]) -> Mapping[str, 
     verdicts = [] if judging is None else verdicts_of(model, steps, judging)
     if judging is None or not verdicts:
         return None
-    return summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))
+    return verdict.summary(verdicts, judging.period, judging.floor * float(_yield_strain(model).min()))

@@ -16,9 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
-from fem_reference.axisymmetric.problem import ContactProblem
+from fem_reference.axisymmetric.problem import Bordered, ContactProblem
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.linear import Kept
@@ -98,20 +97,11 @@ class SphereContact(ContactProblem):
         K = response.tangent - sp.diags(curvature)
         force = response.force + K @ (u0 - u)
         column = K @ d1
-        try:
-            factor = splu(
-                (T.T @ K @ T).tocsc(),
-                permc_spec="NATURAL",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
-        except RuntimeError as error:  # exactly singular
-            raise NotDefiniteError(str(error)) from None
+        right = np.append(-(T.T @ force), load.force - d1 @ force)
         kept.setups += 1
-        side, held = factor.solve(T.T @ column), factor.solve(T.T @ -force)
-        delta = (load.force - d1 @ force - column @ (T @ held)) / (d1 @ column - column @ (T @ side))
-        moved = u0 + T @ (held - delta * side) + delta * d1
-        approach += float(delta)
+        x = Bordered(T.T @ K @ T, T.T @ column, float(d1 @ column))(right)
+        moved = u0 + T @ x[:-1] + x[-1] * d1
+        approach += float(x[-1])
         moved[self.normal[0, active]] -= self.gap(moved, approach)[active]
         self._check(moved)
         return moved, approach

@@ -108,13 +108,3 @@ def pushed_change(shift: Array, hoop: Array, change: Array) -> Array:
     plane = shift + turned + shift @ turned + F @ inner @ np.swapaxes(F, -1, -2)
     around = hoop * (2.0 + hoop) + (1.0 + hoop) ** 2 * tt
     return np.stack([plane[..., 0, 0], around, plane[..., 1, 1], plane[..., 0, 1]], axis=-1)
-
-
-def inverse(F: Array) -> Array:
-    """Inverses of matrices (..., 2, 2)."""
-    det = F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
-    adjugate = np.stack(
-        [np.stack([F[..., 1, 1], -F[..., 0, 1]], axis=-1), np.stack([-F[..., 1, 0], F[..., 0, 0]], axis=-1)],
-        axis=-2,
-    )
-    return adjugate / det[..., None, None]

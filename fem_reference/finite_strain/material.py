@@ -27,7 +27,6 @@ from fem_reference.finite_strain.kinematics import (
     composed,
     deformation,
     exponential_change,
-    inverse,
     logarithm,
     principal,
     pushed_change,
@@ -77,7 +76,7 @@ class Hencky:
         q = np.where(q > 0.0, q, 1.0)
         share = 1.0 - 3.0 * shear * step / q
         stress = 3.0 * self.bulk * mean + share[..., None] * s
-        M = inverse(plane + np.eye(2)) @ change.axes
+        M = np.linalg.inv(plane + np.eye(2)) @ change.axes
         onto = mapping(change.axes, M, 1.0 / (1.0 + hoop))
         C = principal_tangent(s, q, step, slope=slope, shear=shear, bulk=self.bulk)
         spatial = self._spatial(change, stress, share, C)

@@ -47,18 +47,10 @@ class SphereModel(flat.Model):
 
 @dataclass(frozen=True)
 class Curve:
-    """What is compared, one entry a load step.
+    """What is compared, one entry a load step, (n,).
 
-    Attributes
-    ----------
-    force : (n,) array
-        Normal force over E* R^2.
-    radius, approach : (n,) array
-        Contact radius and approach over R.
-    pressure : (n,) array
-        Mean pressure over E*.
-    strain : (n,) array
-        Largest accumulated plastic strain.
+    force: normal force over E* R^2; radius, approach: of the contact over R; pressure: mean one over E*;
+    strain: largest accumulated plastic one.
     """
 
     force: Array
@@ -69,24 +61,8 @@ class Curve:
 
 
 def build(scene: Scene, kind: str) -> flat.Model:
-    """Build the model of a smooth, uncoated scene with a rigid sphere.
-
-    Parameters
-    ----------
-    scene : Scene
-        One that `fem_reference.check` passes.
-    kind : str
-        One of KINDS.
-
-    Returns
-    -------
-    fem_reference.Model
-        Its loads are taken by `load_to`.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `fem_reference.check` does.
+    """The model of a smooth, uncoated scene with a rigid sphere, of one of KINDS, for `load_to`.
+    UnsupportedScene if `fem_reference.check` raises it.
     """
     model = flat.build(plan(scene))
     if kind == "flat":
@@ -103,38 +79,12 @@ def build(scene: Scene, kind: str) -> flat.Model:
 
 
 def load_to(model: flat.Model, shares: Sequence[float]) -> list[Step]:
-    """Solve load steps to shares of the scene's force.
-
-    Parameters
-    ----------
-    model : fem_reference.Model
-        Made by `build`.
-    shares : sequence of float
-        Forces over that of the scene, in their order.
-
-    Returns
-    -------
-    list of Step
-        Up to the first that does not converge.
-    """
+    """Load steps to shares of the scene's force, up to the first that does not converge."""
     return climb(model, [share * model.scales.peak_force for share in shares], model.virgin())
 
 
 def curve_of(model: flat.Model, steps: Sequence[Step]) -> Curve:
-    """Return the curves of load steps that converged.
-
-    Parameters
-    ----------
-    model : fem_reference.Model
-        Made by `build`.
-    steps : sequence of Step
-        Of `load_to`.
-
-    Returns
-    -------
-    Curve
-        Dimensionless, one entry a step.
-    """
+    """The curves of load steps that converged, of `load_to`."""
     slope = model.scales.strain
     states = [step.state for step in steps]
     force = np.array([state.force for state in states]) * slope**3

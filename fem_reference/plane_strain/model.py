@@ -14,10 +14,9 @@ import numpy as np
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.model import ContactModel, material
+from fem_reference.common.quadrilaterals import PlaneSolid, edge_weights, tensor_mesh
 from fem_reference.common.recovery import edge_radius
-from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
-from fem_reference.plane_strain.elements import PlaneSolid, edge_weights, section
 from fem_reference.plane_strain.planner import PlaneStrainPlan
 from fem_reference.plane_strain.problem import LineProblem
 
@@ -31,18 +30,8 @@ below 1 of constant mean pressure; for starting sets only.
 class Model(ContactModel):
     """The plane-strain model of a plan.
 
-    Attributes
-    ----------
-    plan : PlaneStrainPlan
-        Units, bodies, mesh lines, friction.
-    problem : LineProblem
-        The bodies in contact.
-    surface : (n_surface,) array
-        x of the surface nodes, ascending.
-    candidates : slice
-        Those that may touch: all but the ones on the outer boundary.
-    place : float
-        x of the apex of the counter-body.
+    problem: the bodies in contact; surface: (n_surface,) x of the surface nodes, ascending; candidates: those
+    that may touch, all but the ones on the outer boundary; place: x of the apex of the counter-body.
     """
 
     plan: PlaneStrainPlan
@@ -99,22 +88,14 @@ class Model(ContactModel):
         start = centre - edge_radius(centre - x[left], gap[left], int(np.flatnonzero(state.active[left])[-1]))
         return start, end
 
-    def half_width(self, state: Equilibrium) -> float:
+    def size(self, state: Equilibrium) -> float:
         """Half of the distance of the ends of the contact."""
         start, end = self.edges(state)
         return 0.5 * (end - start)
 
     def contact_area(self, state: Equilibrium) -> float:
         """Area of the contact in m^2, on the length of the cylinder."""
-        return 2.0 * self.half_width(state) * self.plan.length * self.scales.length**2
-
-    def friction(self, state: Equilibrium) -> float:
-        """Size of the tangential force over the normal one."""
-        return self.plan.sliding.coefficient
-
-    def displacements(self, state: Equilibrium) -> Array:
-        """Displacements of the half-space."""
-        return self.problem.body(state.u, 0)
+        return 2.0 * self.size(state) * self.plan.length * self.scales.length**2
 
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) modelled forces of the counter-body on the nodes, from the displacements."""
@@ -146,15 +127,10 @@ class Model(ContactModel):
         sides = peeq[-1], peeq[:, -1], peeq[-1 if self.plan.half else 0]
         return any(bool(np.any(side > 0.0)) for side in sides)
 
-    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
-        """Whether the largest contact has fewer elements in its half-width than FEWEST_ELEMENTS."""
-        largest = max(self.half_width(state) for state in states)
-        return round(largest * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS
-
 
 def build(plan: PlaneStrainPlan) -> Model:
     """Mesh, bodies, material and contact candidates of a plan."""
-    mesh, bodies = section(plan.x, plan.z, half=plan.half), plan.bodies
+    mesh, bodies = tensor_mesh(plan.x, plan.z, half=plan.half), plan.bodies
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
     solids = [PlaneSolid(mesh, elastic) for elastic in bodies.elastic]
     surface = solids[0].basis.doflocs[0, solids[0].boundary_dofs("surface", 1)]

@@ -10,19 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.common.arrays import Array
-from fem_reference.common.hertz import kinks_of, required, scales
+from fem_reference.common.hertz import kinks_of, scales
 from fem_reference.common.mesh_lines import two_sided, uniform_then_growing
-from fem_reference.common.plan import Plan, planned, slide, stages_of
-from fem_reference.common.refusals import (
-    box_problems,
-    incompressible,
-    refuse,
-    running_in_problems,
-    shape_problems,
-)
-from sam.scene.result import LeftOut, Stage
+from fem_reference.common.plan import Plan, planned, section_of, slide
+from fem_reference.common.refusals import box_problems, problems_of, refuse
+from sam.scene.result import LeftOut
 from sam.scene.schema import Scene
-from sam.scene.section import Problem, spelling
+from sam.scene.section import Problem, spelling, stated
 
 MODEL = "fem-plane-strain"
 ALLOWS = "the plane-strain finite-element model allows"
@@ -61,35 +55,11 @@ class PlaneStrainPlan(Plan):
 
 
 def plan(scene: Scene) -> PlaneStrainPlan:
-    """Return what the plane-strain model solves of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    PlaneStrainPlan
-        Units, bodies, mesh lines, friction, load schedule, and the stages with their sizes and reasons.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-    """
+    """What the plane-strain model solves of a scene; UnsupportedScene as of `check`."""
     check(scene)
-    units, counter = scales(scene), required(scene.counterbody)
+    units, counter = scales(scene), stated(scene.counterbody)
     half, (x, z), core = is_half(scene), *choose_lines(scene)
-    bodies, columns, rows = 2 if counter.elastic else 1, x.size - 1, z.size - 1
-    nodes = (columns + 1) * (rows + 1) + columns * (rows + 1) + rows * (columns + 1)
-    elements, unknowns, points = bodies * columns * rows, 2 * bodies * nodes, 4 * columns * rows
     words = f"{'half of the section, x >= 0' if half else 'the whole section'}, plane strain"
-    stages = [Stage("mesh", True, words, {"elements": elements, "bodies": bodies, "unknowns": unknowns})]
-    if bodies > 1:
-        words = "elastic: that of the body, turned over"
-        stages.append(Stage("mesh of the counter-body", True, words, {"elements": columns * rows}))
-    stresses = Stage("stresses at the Gauss points", True, "at peak load", {"points": points})
     return planned(
         PlaneStrainPlan,
         scene,
@@ -99,50 +69,22 @@ def plan(scene: Scene) -> PlaneStrainPlan:
         z=z,
         half=half,
         core=core,
-        length=required(counter.length) / units.length,
-        elements=elements,
-        unknowns=unknowns,
-        points=points,
-        stages=stages_of(scene, stages, stresses),
+        length=stated(counter.length) / units.length,
+        **section_of(scene, x, z, words),
     )
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
-    """Return the stages of the plane-strain model that a scene does not need, with the reason.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Returns
-    -------
-    list of LeftOut
-        As a result of `solve` has them.
-
-    Raises
-    ------
-    UnsupportedScene
-        If `check` does.
-    """
+    """Stages that a scene does not need, with the reason, as a result of `solve` has them."""
     return plan(scene).left_out
 
 
 def check(scene: Scene) -> None:
-    """Check that the plane-strain model can represent a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Raises
-    ------
-    UnsupportedScene
-        With every reason at once: key, value and what is allowed.
+    """Raise UnsupportedScene with every reason at once, key, value and what is allowed, for a scene that the
+    plane-strain model cannot represent.
     """
     loading, coating = scene.loading, scene.body.coating
-    problems = shape_problems(scene, ("cylinder",), "plane-strain")
+    problems = problems_of(scene, ("cylinder",), "plane-strain")
     if loading.prescribed is not None:
         words = f'{ALLOWS} a counter-body of shape "cylinder"'
         problems.append(Problem("loading.prescribed", spelling(loading.prescribed), words))
@@ -153,9 +95,6 @@ def check(scene: Scene) -> None:
         if surface is not None:
             words = f"{ALLOWS} smooth bodies: remove [{key}]"
             problems.append(Problem(f"{key}.kind", spelling(surface.kind), words))
-    for key, body in (("body", scene.body), ("counterbody", scene.counterbody)):
-        problems += [] if body is None else incompressible(key, body.poisson)
-    problems += running_in_problems(scene)
     refuse(problems)
     depth = _grown(scene)[1] + 1.0 / scene.fem.cells_per_radius
     refuse(box_problems(scene, depth, "contact"))

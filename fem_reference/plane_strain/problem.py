@@ -31,10 +31,10 @@ from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import flamant, stretched
-from fem_reference.common.linear import Counted, Kept, nested_dissection
+from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
+from fem_reference.common.quadrilaterals import PlaneSolid, elimination_order
 from fem_reference.common.schedule import Load
-from fem_reference.plane_strain.elements import PlaneSolid
 
 ACCURACY = 0.1
 """Residual of a linear solve over its right-hand side, far from equilibrium; near it less, see `_krylov`."""
@@ -265,10 +265,7 @@ def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> 
 
 def _factor(solid: PlaneSolid, free: Bools) -> Callable[[Array], Array]:
     """Inverse of the stiffness of the free degrees of freedom, by nested dissection; zero elsewhere."""
-    lines = [np.unique(np.round(line, 12)) for line in solid.basis.mesh.p]
-    places = zip(solid.basis.doflocs, lines, strict=True)
-    i, j = (np.rint(2.0 * np.interp(x, line, np.arange(line.size))).astype(int) for x, line in places)
-    order = np.argsort(nested_dissection(lines[0].size - 1, lines[1].size - 1)[i, j], kind="stable")
+    order = elimination_order(solid)
     order = order[free[order]]
     matrix, options = solid.stiffness[order][:, order].tocsc(), {"SymmetricMode": True}
     factor = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)

@@ -12,8 +12,8 @@ import numpy as np
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.elasticity import mises
-from fem_reference.common.recovery import Peak, parabola_peak
+from fem_reference.common.elasticity import mises, on_grid
+from fem_reference.common.recovery import Peak, over_depth, plastic_fields
 from fem_reference.plane_strain.model import Model
 from sam.scene.yield_curve import Kinks
 
@@ -46,20 +46,19 @@ class Stresses:
 
 def columns_of_points(model: Model) -> Integers:
     """(2 nx, 2 nz) numbers of the Gauss points of the body in a flat field, by x and by z."""
-    x, z = np.round(model.body.points.reshape(2, -1), 12)
-    return np.lexsort((z, x)).reshape(2 * model.plan.x.size - 2, -1)
+    return on_grid(model.body.points.reshape(2, -1), (2 * model.plan.x.size - 2, -1))
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
     """Stresses of a load step."""
-    unit, history, points = model.scales, state.history, columns_of_points(model)
+    unit, points = model.scales, columns_of_points(model)
     x, z = model.body.points.reshape(2, -1) * unit.length
-    gauss = model.stress(state).reshape(4, -1)[:, points] * unit.pressure
-    peeq, tensor = np.zeros(points.shape), None
-    if history is not None:
-        peeq = history.peeq.ravel()[points] * unit.strain
-        shear = np.array([1.0, 1.0, 1.0, 0.5])[:, None, None]
-        tensor = history.plastic_strain.reshape(4, -1)[:, points] * unit.strain * shear
+
+    def ordered(field: Array) -> Array:
+        return field.reshape(*field.shape[:-2], -1)[..., points]
+
+    gauss = ordered(model.stress(state)) * unit.pressure
+    peeq, tensor = plastic_fields(state.history, gauss, unit.strain, ordered)
     x, z = x[points[:, 0]], z[points[0]]
     axis = on_axis(x, gauss)
     if model.plan.half:
@@ -94,18 +93,15 @@ def largest_peeq(s: Stresses) -> Peak:
 
 def largest(s: Stresses, field: Array, axis: Array) -> Peak:
     """Largest value over the Gauss points (nx, nz) and the axis (nz,), and its depth in m (None if all are
-    zero); that of the parabola over depth through it and its neighbours, but across a kink of the yield
-    stress.
+    zero), of `over_depth`.
     """
     i, k = np.unravel_index(np.argmax(field), field.shape)
     row = field[i]
     if axis.max() > field.max():
         row, k = axis, axis.argmax()
-    near = slice(int(k) - 1, int(k) + 2)
     if row[k] == 0.0:
         return 0.0, None
     # at a point that has yielded the stress is bounded, and no parabola passes it
-    bounded = field is not s.peeq and row is not axis and s.peeq[i, k] > 0.0
-    if bounded or not 0 < k < s.z.size - 1 or np.ptp(s.kinks.interval(s.z[near])):
+    if field is not s.peeq and row is not axis and s.peeq[i, k] > 0.0:
         return float(row[k]), float(s.z[k])
-    return parabola_peak(s.z[near], row[near])
+    return over_depth(s.z, row, int(k), s.kinks)

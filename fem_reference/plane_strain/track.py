@@ -10,12 +10,12 @@ import numpy as np
 from fem_reference.common.arrays import Array
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.hertz import required
 from fem_reference.common.tables import columns
 from fem_reference.common.track import Track, track_table
 from fem_reference.plane_strain.model import Model
 from fem_reference.plane_strain.recovery import Stresses, columns_of_points
 from sam.scene.result import CROSS, Table
+from sam.scene.section import stated
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class LineTrack(Track):
     def strain(self, state: Equilibrium) -> tuple[Array, Array]:
         """Of the base, at the Gauss points (2 nx, 2 nz)."""
         unit, points = self.model.scales, columns_of_points(self.model)
-        peeq = required(state.history).peeq.ravel()[points] * unit.strain
+        peeq = stated(state.history).peeq.ravel()[points] * unit.strain
         return peeq, self.model.body.points[0].ravel()[points[:, 0]] * unit.length
 
     def tables(self, state: Equilibrium, stresses: Stresses) -> dict[str, Table]:

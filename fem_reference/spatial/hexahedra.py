@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 from skfem import Basis, ElementHex1, ElementVector, MeshHex
 
-from fem_reference.common.arrays import Array, Integers
+from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.elasticity import Solid
-from fem_reference.spatial.lines import Lines
+from fem_reference.common.mesh_lines import Lines
 
 SHEARS = ((1, 2), (0, 2), (0, 1))
 """Pairs of coordinates of the shear components yz, xz, xy."""
@@ -25,12 +25,7 @@ class HexSolid(Solid):
     """
 
     def __init__(
-        self,
-        mesh: MeshHex,
-        elastic: Elastic,
-        *,
-        mean_dilatation: bool = True,
-        coating: Coating | None = None,
+        self, mesh: MeshHex, elastic: Elastic, *, mean_dilatation: bool = True, coating: Coating | None = None
     ):
         basis = Basis(mesh, ElementVector(ElementHex1()), intorder=3)
         B = strain_operator(basis)
@@ -62,9 +57,3 @@ def block(lines: Lines) -> MeshHex:
     if lines.half:
         boundaries["symmetry"] = lambda p: p[1] == 0.0
     return MeshHex.init_tensor(x, y, z).with_boundaries(boundaries)
-
-
-def on_grid(points: Array, shape: tuple[int, ...]) -> Integers:
-    """Numbers of the points (3, n) of a tensor grid, as an array of the shape of the grid."""
-    x, y, z = np.round(points, 12)
-    return np.lexsort((z, y, x)).reshape(shape)

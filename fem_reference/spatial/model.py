@@ -14,12 +14,12 @@ import numpy as np
 
 from fem_reference.common.arrays import Array, Bools, Integers
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import on_grid
 from fem_reference.common.hertz import hertz_pressure
+from fem_reference.common.mesh_lines import Lines
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
-from fem_reference.common.refusals import FEWEST_ELEMENTS
 from fem_reference.common.schedule import Load
-from fem_reference.spatial.hexahedra import HexSolid, block, on_grid
-from fem_reference.spatial.lines import Lines
+from fem_reference.spatial.hexahedra import HexSolid, block
 from fem_reference.spatial.planner import SpatialPlan
 from fem_reference.spatial.problem import Candidates, SlidingProblem
 from fem_reference.spatial.surface import contact_area, hertz_forces
@@ -30,18 +30,9 @@ from sam.scene.result import Table
 class Model(ContactModel):
     """The three-dimensional model of a plan.
 
-    Attributes
-    ----------
-    plan : SpatialPlan
-        Units, body, mesh planes, friction.
-    problem : SlidingProblem
-        The body in contact.
-    surface : (nx + 1, ny + 1) array
-        Numbers of the surface nodes.
-    candidates : (n_candidates,) array
-        Places in the flat `surface` of the nodes that may touch, from the origin outwards.
-    place : tuple of float
-        (x, y) of the apex of the counter-body.
+    problem: the body in contact; surface: (nx + 1, ny + 1) numbers of the surface nodes; candidates:
+    (n_candidates,) places in the flat `surface` of those that may touch, from the origin outwards; place: (x,
+    y) of the apex of the counter-body.
     """
 
     plan: SpatialPlan
@@ -49,6 +40,11 @@ class Model(ContactModel):
     surface: Integers
     candidates: Integers
     place: tuple[float, float] = field(default=(0.0, 0.0), kw_only=True)
+
+    @property
+    def centred(self) -> bool:
+        """Not of a rough body: nothing says where the middle is."""
+        return self.plan.kind == "smooth"
 
     @property
     def part(self) -> float:
@@ -132,10 +128,6 @@ class Model(ContactModel):
         """Area of the contact in m^2."""
         return self.area(state) * self.scales.length**2
 
-    def displacements(self, state: Equilibrium) -> Array:
-        """Displacements of the half-space."""
-        return state.u
-
     def contact_forces(self, state: Equilibrium) -> Array:
         """(n_candidates,) forces of the counter-body on the nodes, from the displacements."""
         return self.body.internal_force(self.stress(state))[self.problem.normal]
@@ -162,10 +154,9 @@ class Model(ContactModel):
         yielded = peeq > 0.0
         return any(np.any(side) for side in (yielded[[0, -1]], yielded[:, -1], yielded[:, :, -1]))
 
-    def too_coarse(self, states: Sequence[Equilibrium]) -> bool:
-        """Whether the largest contact has fewer elements in its radius than FEWEST_ELEMENTS."""
-        radius = np.sqrt(max(self.area(state) for state in states) / np.pi)
-        return bool(round(radius * self.plan.fine_cells_per_radius) < FEWEST_ELEMENTS)
+    def size(self, state: Equilibrium) -> float:
+        """Radius of a circle of the area of the contact."""
+        return float(np.sqrt(self.area(state) / np.pi))
 
     def centroid(self, state: Equilibrium) -> float:
         """x of the resultant of the pressure."""
@@ -176,7 +167,7 @@ class Model(ContactModel):
         """Nodes that probably touch: Hertz's ellipse, or of the previous area, scaled."""
         radius, share = self.plan.expected, force / self.scales.peak_force
         if previous.force > 0.0:
-            radius, share = np.sqrt(self.area(previous) / np.pi), force / previous.force
+            radius, share = self.size(previous), force / previous.force
         radius *= share ** (PLASTIC_GROWTH if previous.yielded else HERTZ_GROWTH)
         (x, y), (a, b) = self.places, self.plan.axes
         return np.hypot((x - self.place[0]) / a, (y - self.place[1]) / b) <= radius

@@ -42,15 +42,6 @@ NodalForces = Callable[[Load], Array]
 
 
 @dataclass(frozen=True)
-class System:
-    """A linear system: product with its matrix, right-hand side, symmetry."""
-
-    apply: Callable[[Array], Array]
-    right: Array
-    symmetric: bool
-
-
-@dataclass(frozen=True)
 class Candidates:
     """Surface nodes that may touch.
 
@@ -194,12 +185,22 @@ class SlidingProblem:
         right = -folded(force)
         right[-1] += self.share * load.force if active.any() else 0.0
         symmetric = load.ratio == 0.0 or not active.any()  # a traction that is given follows no displacement
-        system = System(lambda v: folded(K @ unfolded(v)), right, symmetric)
-        v = self._solve(system, response, active, kept)
+        size = right.size
+        operator = LinearOperator((size, size), lambda v: folded(K @ unfolded(v.ravel())))
+        v = self._solve(operator, right, response, active, kept=kept, symmetric=symmetric)
         u = u + jump + unfolded(v)
         return u, approach + float(v[-1]) if active.any() else float(self.gap(u, 0.0).min())
 
-    def _solve(self, system: System, response: Response, active: Bools, kept: Kept) -> Array:
+    def _solve(
+        self,
+        operator: LinearOperator,
+        right: Array,
+        response: Response,
+        active: Bools,
+        *,
+        kept: Kept,
+        symmetric: bool,
+    ) -> Array:
         """Increments of the displacements and delta; the preconditioner treats delta apart, by its diagonal.
 
         One that is kept from an earlier tangent, and does not do, is made anew.
@@ -212,7 +213,7 @@ class SlidingProblem:
                 raise NotDefiniteError(str(error)) from None
         unit = np.zeros(self.size + 1)
         unit[-1] = 1.0
-        stiffness = system.apply(unit)[-1] if active.any() else 1.0
+        stiffness = operator.matvec(unit)[-1] if active.any() else 1.0
 
         def inverse(r: Array) -> Array:
             return np.append(
@@ -220,21 +221,21 @@ class SlidingProblem:
                 r.ravel()[-1] / stiffness,
             )
 
-        counted, size = Counted(inverse), system.right.size
+        counted = Counted(inverse)
         try:
             v = solve(
-                LinearOperator((size, size), lambda v: system.apply(v.ravel())),
-                system.right,
-                LinearOperator((size, size), counted),
+                operator,
+                right,
+                LinearOperator(operator.shape, counted),
                 accuracy=ACCURACY,
                 target=kept.target * self.share,
-                symmetric=system.symmetric,
+                symmetric=symmetric,
             )
         except UnsolvedError as error:
             if not earlier:
                 raise NotDefiniteError(str(error)) from None
             kept.inverse = None
-            return self._solve(system, response, active, kept)
+            return self._solve(operator, right, response, active, kept=kept, symmetric=symmetric)
         finally:
             kept.linear += counted.calls
         kept.first = kept.first or counted.calls

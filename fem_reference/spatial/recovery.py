@@ -12,9 +12,9 @@ from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.hertz import required
-from fem_reference.common.recovery import Peak, continued, parabola_peak
+from fem_reference.common.recovery import Peak, continued, over_depth, parabola_peak, plastic_fields
 from fem_reference.spatial.model import Model
+from sam.scene.section import stated
 from sam.scene.yield_curve import Kinks
 
 ODD_IN_Y = [3, 5]
@@ -61,13 +61,13 @@ class Stresses:
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
     """Stresses of a load step."""
-    unit, history, elements, lines = model.scales, state.history, model.elements, model.lines
-    stress = model.stress(state).mean(axis=-1)[:, elements] * unit.pressure
-    peeq, tensor = np.zeros(elements.shape), None
-    if history is not None:
-        peeq = history.peeq.mean(axis=-1)[elements] * unit.strain
-        shear = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])[:, None, None, None]
-        tensor = history.plastic_strain.mean(axis=-1)[:, elements] * unit.strain * shear
+    unit, lines = model.scales, model.lines
+
+    def means(field: Array) -> Array:
+        return field.mean(axis=-1)[..., model.elements]
+
+    stress = means(model.stress(state)) * unit.pressure
+    peeq, tensor = plastic_fields(state.history, stress, unit.strain, means)
     plane = at_zero(stress, lines.y, 2)
     if lines.half:
         plane[ODD_IN_Y] = 0.0
@@ -137,7 +137,7 @@ def largest_mises(s: Stresses) -> Peak:
 
 def largest_in_layer(s: Stresses, coating: bool) -> Peak:
     """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
-    part, interface = s.layer(coating), required(s.interface)
+    part, interface = s.layer(coating), stated(s.interface)
     if not part.peeq.any():
         for depth in (0.0, interface) if coating else (interface,):
             part = with_face(part, depth)
@@ -164,9 +164,7 @@ def largest(s: Stresses, field: Array, plane: Array) -> Peak:
         return float(field.max()), float(s.z[np.unravel_index(np.argmax(field), field.shape)[2]])
     if peak == 0.0:
         return 0.0, None
-    value, depth = float(peak), float(s.z[k])
-    if 0 < k < s.z.size - 1 and not np.ptp(s.kinks.interval(s.z[k - 1 : k + 2])):
-        value, depth = parabola_peak(s.z[k - 1 : k + 2], plane[i, k - 1 : k + 2])
+    value, depth = over_depth(s.z, plane[i], int(k), s.kinks)
     if 0 < i < s.x.size - 1:
         value += parabola_peak(s.x[i - 1 : i + 2], plane[i - 1 : i + 2, k])[0] - float(peak)
     return value, depth

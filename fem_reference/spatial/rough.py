@@ -143,7 +143,9 @@ def overlap(gap: Array, areas: Array, depth: float) -> tuple[float, float]:
 
 def build(plan: SpatialPlan) -> RoughModel:
     """Mesh, body, material and contact candidates of the plan of a rough body."""
-    lines, bodies, patch, start = plan.lines, plan.bodies, of_rough(plan), start_of(plan)
+    lines, bodies, patch = plan.lines, plan.bodies, of_rough(plan)
+    x, y = plan.sliding.places[0] if plan.sliding.moves else (0.0, 0.0)
+    start = float(x), float(y)
     solid = HexSolid(block(lines), bodies.elastic[0])
     surface = surface_nodes(solid, lines)
     body = opposite = np.zeros(patch.cells)
@@ -162,11 +164,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         carried=patch.radii is not None,
     )
     problem = SlidingProblem(
-        solid,
-        bodies.elastic[0],
-        touching,
-        share=lines.share,
-        material=material(bodies, plan.scales, solid),
+        solid, bodies.elastic[0], touching, share=lines.share, material=material(bodies, plan.scales, solid)
     )
     return RoughModel(plan, problem, surface, candidates, body, opposite, float(inside.min()), place=start)
 
@@ -190,12 +188,6 @@ def heights_of(patch: Patch, surface: Surface) -> Array:
 def counter_heights_of(patch: Patch, surface: Surface, place: Place) -> Array:
     """The same of the counter-body at a place in m, positive out of that."""
     return heights_of(patch, surface) if patch.strip is None else patch.strip.at(0, place)
-
-
-def start_of(plan: SpatialPlan) -> Place:
-    """Where the counter-body is first."""
-    x, y = plan.sliding.places[0] if plan.sliding.moves else (0.0, 0.0)
-    return float(x), float(y)
 
 
 def in_metres(plan: SpatialPlan, place: Place) -> Place:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,6 @@ from fem_reference.common import track
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
-from fem_reference.common.loading import Step
 from fem_reference.common.tables import columns
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.recovery import Stresses, at_zero, stresses
@@ -96,10 +94,3 @@ class Track(track.Track):
             "track": track.track_table(self, (x, uz), (s.x, s.z), np.stack([strain, *plane])),
             "cross": columns(CROSS, [*values, *components]),
         }
-
-
-def path_results(
-    model: Model, steps: Sequence[Step], states: Mapping[str, Equilibrium], fields: Mapping[str, Stresses]
-) -> tuple[dict[str, Table], dict[str, float | None]]:
-    """What the path of a model adds to a result, see `fem_reference.common.track`."""
-    return track.path_results(Track(model), steps, states, fields)

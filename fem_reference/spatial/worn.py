@@ -21,32 +21,25 @@ from scipy.interpolate import RegularGridInterpolator, interp1d
 
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.contact import Equilibrium, without_contact
-from fem_reference.common.hertz import required
+from fem_reference.common.elasticity import on_grid
 from fem_reference.common.loading import Progressed, follow
 from fem_reference.common.plasticity import History
-from fem_reference.spatial.hexahedra import on_grid
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
 from fem_reference.spatial.solution import plane_table
 from sam.scene.result import Table
 from sam.scene.schema import Scene
+from sam.scene.section import stated
 
 
 @dataclass(frozen=True)
 class WornCycle:
     """A cycle of a rough body that wears.
 
-    Attributes
-    ----------
-    tables : dict of str to Table
-        "surface" and "plane" at its peak, as in a result.
-    peeq_max : float
-        Largest accumulated plastic strain at its peak.
-    worn : (nx, ny) array
-        Depth in m that is removed up to its end.
-    moved : (nx, ny) array
-        Displacement in m of the unloaded surface into the body after the removal, at the nodes of the patch.
+    tables: "surface" and "plane" at its peak, as in a result; peeq_max: largest accumulated plastic strain
+    there; worn: (nx, ny) depth in m that is removed up to its end; moved: (nx, ny) displacement in m of the
+    unloaded surface into the body after the removal, at the nodes of the patch.
     """
 
     tables: dict[str, Table]
@@ -69,7 +62,7 @@ class Limits:
 
 def limits_of(scene: Scene) -> Limits:
     """The strain limits of a scene with [wear]."""
-    wear, plasticity = required(scene.wear), required(scene.body.plasticity)
+    wear, plasticity = stated(scene.wear), stated(scene.body.plasticity)
     falls = wear.roof == "falls"
     if wear.strain_limit_layer is None or plasticity.layer_thickness is None:
         return Limits(wear.strain_limit, wear.strain_limit, 0.0, falls)
@@ -77,27 +70,13 @@ def limits_of(scene: Scene) -> Limits:
 
 
 def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[WornCycle]:
-    """Solve the cycles of a rough scene with [wear], with removal at the end of each of them.
+    """The cycles of a rough scene with [wear], solved with removal at the end of each of them.
 
-    Parameters
-    ----------
-    scene : Scene
-        A rough body that yields below a rigid counter-body. Of its [wear] only the strain limits and the
-        roof are read: nothing is smoothed.
-    depths : sequence of (nx, ny) arrays, optional
-        Depth in m to remove from the cells at the end of each cycle, in place of the model's own.
-
-    Returns
-    -------
-    list of WornCycle
-        In their order.
-
-    Raises
-    ------
-    UnsupportedScene
-        For what else of the scene finite elements cannot represent.
-    ValueError
-        Where a cycle does not converge, or all that the mesh has below a node is above the limit.
+    scene: a rough body that yields below a rigid counter-body; of its [wear] only the strain limits and the
+    roof are read, nothing is smoothed. depths: (nx, ny) in m to remove from the cells at the end of each
+    cycle, in place of the model's own. Raises UnsupportedScene for what else of the scene finite elements
+    cannot represent, ValueError where a cycle does not converge, or all that the mesh has below a node is
+    above the limit.
     """
     limits = limits_of(scene)
     model = build(plan(scene.model_copy(update={"wear": None})))
@@ -128,7 +107,7 @@ def columns_of_points(model: RoughModel) -> Integers:
 def own_depth(model: RoughModel, state: Equilibrium, limits: Limits) -> Array:
     """(nx, ny) depth in m down to which the strain below the nodes of the patch is above the limits."""
     columns, points = columns_of_points(model), model.body.points.reshape(3, -1)
-    peeq = required(state.history).peeq.ravel()[columns] * model.scales.strain
+    peeq = stated(state.history).peeq.ravel()[columns] * model.scales.strain
     # a node inside of the mesh has the last point of the element before it and the first of the one after
     beside = 0.5 * (peeq[1:-1:2] + peeq[2:-1:2])
     below = 0.5 * (beside[:, 1:-1:2] + beside[:, 2:-1:2])
@@ -196,7 +175,7 @@ def lowered(model: RoughModel, state: Equilibrium, depth: Array) -> tuple[RoughM
     gap = model.initial_gap.ravel()[model.candidates]
     model = replace(model, problem=model.problem.with_gap(gap))
     nodal = on_mesh(model.plan, depth / model.scales.length, 0.0)
-    history = moved_up(model, required(state.history), nodal)
+    history = moved_up(model, stated(state.history), nodal)
     load, scale = state.load, model.scales.peak_force
     state = without_contact(model.problem, load, scale, u=state.u, history=history)
     if not state.converged:

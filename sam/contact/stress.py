@@ -30,30 +30,13 @@ def stresses(
     layered: LayeredPatches | None = None,
     counters: Counters | None = None,
 ) -> Array:
-    """Stress under tractions on the surface, at the centres of the observed cells. Paper Eq. 7, first sum.
+    """Stress in Pa under tractions on the surface, at the centres of the observed cells, (6, nz, nx, ny);
+    components 11 22 33 23 13 12, tension positive. Paper Eq. 7, first sum.
 
-    Parameters
-    ----------
-    tractions
-        Direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa on the
-        whole grid. A direction that is left out costs nothing.
-    cell
-        (hx, hy), sides of a cell in m; third the cells along y after which the tractions repeat, if they do.
-    depths
-        (nz,) in m.
-    observed
-        The cells whose stresses are wanted.
-    nu
-        Poisson's ratio of the body.
-    layered
-        Coefficients of a coated body, in place of nu.
-    counters
-        Where the work is counted.
-
-    Returns
-    -------
-    Array
-        (6, nz, nx, ny) in Pa; components 11 22 33 23 13 12, tension positive.
+    tractions: direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa
+    on the whole grid; one that is left out costs nothing. cell: (hx, hy), sides in m; third the cells along y
+    after which the tractions repeat, if they do. depths: (nz,) in m. layered: coefficients of a coated body,
+    in place of nu. counters: where the work is counted.
     """
     (hx, hy, *period), depths = cell, np.asarray(depths, dtype=float)
     total = np.zeros((len(STRESS), len(depths), *observed.shape))
@@ -101,18 +84,7 @@ def _needed(field: Array, load: int, observed: Window) -> list[int]:
 
 
 def von_mises(stress: Array) -> Array:
-    """Von Mises stress, to compare in paper Eq. 8.
-
-    Parameters
-    ----------
-    stress
-        (6, ...), components 11 22 33 23 13 12, in any unit.
-
-    Returns
-    -------
-    Array
-        (...), in the same unit.
-    """
+    """Von Mises stress (...) of stresses (6, ...), to compare in paper Eq. 8."""
     s11, s22, s33, s23, s13, s12 = stress
     normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
     return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))

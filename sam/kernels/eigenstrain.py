@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.kernels import line
-from sam.kernels.patches import FURTHER, STRESS, Cuboids, Lags, repeated
+from sam.kernels.patches import FURTHER, STRESS, Cuboids, Lags, parity as of_load, repeated
 from sam.kernels.primitives import Corners, primitive
 
 PAIRS = tuple((int(name[0]) - 1, int(name[1]) - 1) for name in STRESS)
@@ -73,14 +73,12 @@ def eigenstrain_table() -> dict[str, dict[str, dict[Term, tuple[float, ...]]]]:
 
 def parity(i: int, j: int) -> tuple[int, int]:
     """Sign of stress coefficient [i, j] (0 .. 5) under x -> -x, y -> -y: each index 1 (2) is odd in x (y)."""
-    name = STRESS[i] + STRESS[j]
-    return (-1) ** name.count("1"), (-1) ** name.count("2")
+    return of_load(STRESS[i], STRESS[j])
 
 
 def displacement_parity(component: int, j: int) -> tuple[int, int]:
     """Sign of the coefficient of u_component (1 .. 3) by eigenstrain j (0 .. 5) under x -> -x, y -> -y."""
-    name = str(component) + STRESS[j]
-    return (-1) ** name.count("1"), (-1) ** name.count("2")
+    return of_load(str(component), STRESS[j])
 
 
 @dataclass(frozen=True)

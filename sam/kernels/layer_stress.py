@@ -187,11 +187,12 @@ class LayerStress:
         self.image = _Shared(sums, digits, self._image_sums, at_once)
         self.full = _Shared(offsets, digits, self._full_space_sums, at_once)
 
-    def of(self, layer: int, out: Array) -> None:
-        """Stress/mu in one of the observed layers into `out`, (36, n, X, Y); each once, in order. In plane
-        strain what is odd in y is left as it is.
+    def of(self, layer: int, out: Array, sources: slice = slice(None)) -> None:
+        """Stress/mu in one of the observed layers by sources into `out`, (36, n, X, Y); each once, in order.
+        In plane strain what is odd in y is left as it is.
         """
-        for k, (image, stress) in enumerate(zip(self._image(layer), self._full_space(layer), strict=True)):
+        found = zip(self._image(layer, sources), self._full_space(layer, sources), strict=True)
+        for k, (image, stress) in enumerate(found):
             stress += image
             self._every(stress, out[:, k])
 
@@ -212,20 +213,16 @@ class LayerStress:
         out[self.rows] = rows
         return out
 
-    def _image(self, layer: int) -> Iterator[Array]:
-        for first, image in self.image.of(layer):
+    def _image(self, layer: int, sources: slice = slice(None)) -> Iterator[Array]:
+        for first, image in self.image.of(layer)[sources]:
             if move := self.points[layer, 0] - self.points[first // (len(self.faces) - 1), 0]:
                 yield np.dot(move ** np.arange(3), image.reshape(3, -1)).reshape(image.shape[1:])
             else:
                 yield image[0]
 
-    def _full_space(self, layer: int) -> Iterator[Array]:
-        for k, (_, functions) in enumerate(self.full.of(layer)):
-            flat = functions.reshape(len(functions), -1)
-            stress = np.concatenate([block.full @ flat[block.of_full] for block in self.blocks])
-            stress = stress.reshape(-1, *functions.shape[1:])
-            if self.above[layer, k]:
-                stress *= self.mirrored
+    def _full_space(self, layer: int, sources: slice = slice(None)) -> Iterator[Array]:
+        for k, (_, shared) in list(enumerate(self.full.of(layer)))[sources]:
+            stress = shared * self.mirrored if self.above[layer, k] else shared.copy()
             if self.inside[layer, k]:  # paper, last term of Eq. 3: inside the plastic volume
                 stress -= self.own[:, None, None] * self.functions.itself
             yield stress
@@ -260,12 +257,15 @@ class LayerStress:
         return np.concatenate(planes, axis=2)
 
     def _full_space_sums(self, pairs: Numbers, shared: bool) -> Array:
-        """Sums of the functions, which give the coefficients: (pairs, functions, X, Y)."""
+        """The coefficients by sums of the functions, without the eigenstrain's own: (pairs, rows, X, Y)."""
         z, face, sign, index = self._at_faces(pairs, self.above.ravel()[pairs])
         functions = self.functions(False, sign * (z - face), self.blocks[-1].of_full.stop).mean(axis=2)
         sums = functions[index[1]] - functions[index[0]]
-        planes = [self.functions.planes(sums[:, block.of_full], block.odd) for block in self.blocks]
-        return np.concatenate(planes, axis=1)
+        planes = [
+            np.tensordot(block.full, self.functions.planes(sums[:, block.of_full], block.odd), ([1], [1]))
+            for block in self.blocks
+        ]
+        return np.concatenate(planes).swapaxes(0, 1)
 
 
 class _Shared:

@@ -123,25 +123,12 @@ def load_table() -> dict[str, dict[str, list[Row]]]:
     }
 
 
-def parity(name: str, load: int) -> tuple[int, int]:
-    """Sign of a coefficient under x -> -x and under y -> -y.
-
-    Each index 1 (2) is odd in x (y).
-
-    Parameters
-    ----------
-    name
-        "11" ... "12" for a stress, "1" ... "3" for a displacement.
-    load
-        Direction of the traction: 1, 2 or 3.
-
-    Returns
-    -------
-    tuple of int
-        1 or -1, in x and in y.
+def parity(name: str, load: int | str) -> tuple[int, int]:
+    """Sign of a coefficient under x -> -x and under y -> -y: each index 1 (2) is odd in x (y). name: "11" ...
+    "12" of a stress, "1" ... "3" of a displacement; load: direction of the traction.
     """
-    indices = name + str(load)
-    return (-1) ** indices.count("1"), (-1) ** indices.count("2")
+    x, y = ((-1) ** f"{name}{load}".count(axis) for axis in "12")
+    return x, y
 
 
 def _corner_sum(rows: list[Row], nu: float, corners: Corners, z: Array) -> Array:
@@ -185,36 +172,18 @@ def stress_coefficients(
     names: Sequence[str] = STRESS,
     shift: tuple[float, float] = (0.0, 0.0),
 ) -> Array:
-    """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin. Paper Eq. 7, 20, 21.
+    """Stress at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin, (len(names), nz, nx,
+    ny). Paper Eq. 7, 20, 21.
 
-    Parameters
-    ----------
-    lags
-        Where the stress is wanted (negative lags: `parity`).
-    z
-        Depth, or depths (nz,), >= 0 in the unit of hx. At z = 0 the values are limits from inside the body.
-    nu
-        Poisson's ratio.
-    load
-        Direction of the traction on the body: 1, 2 or 3 (> 0 pressing into it).
-    names
-        Components of the stress, of `STRESS`.
-    shift
-        (x, y) by which every observed point is moved, in the unit of hx; none where loads repeat.
-
-    Returns
-    -------
-    Array
-        (len(names), nz, nx, ny), without a unit: stress per traction.
+    lags: where it is wanted (negative ones: `parity`); z: depth, or depths (nz,), >= 0 in the unit of hx, at
+    0 the limits from inside the body; load: direction of the traction on the body, 1, 2 or 3 (> 0 pressing
+    into it); names: components, of `STRESS`; shift: (x, y) by which every observed point is moved, in the
+    unit of hx, none where loads repeat.
     """
     if lags.period > 1:
         odd = np.array([[parity(name, load)[1] < 0] for name in names])
-        at = [
-            repeated(
-                lags, odd, FURTHER[1], partial(stress_coefficients, z=each, nu=nu, load=load, names=names)
-            )
-            for each in np.atleast_1d(z)
-        ]
+        alone = partial(stress_coefficients, nu=nu, load=load, names=names)
+        at = [repeated(lags, odd, FURTHER[1], partial(alone, z=each)) for each in np.atleast_1d(z)]
         return np.concatenate(at, axis=1)
     corners, depth = _corners(lags, z, shift)
     table = load_table()["stress"]
@@ -225,29 +194,14 @@ def stress_coefficients(
 def displacement_coefficients(
     lags: Lags, nu: float, *, component: int = 3, load: int = 3, z: float = 0.0
 ) -> Array:
-    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin.
+    """Displacement times mu at (i hx, j hy, z) under unit traction on the cell hx x hy at the origin, in the
+    unit of hx, (nx, ny).
 
     Paper: D_ij of Eq. 5, printed for D_33 and D_31. For two bodies in contact the caller replaces (1 - nu)/mu
-    by the sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal).
+    by the sum over both (normal-normal) and (1 - 2 nu)/mu by the difference (tangential-normal). component,
+    load: directions of the displacement and of the traction on the body, 1, 2 or 3 (> 0 into the body); z:
+    depth >= 0 in the unit of hx; where loads repeat 0, and u along the load is zero at |x| = period hy/2.
 
-    Parameters
-    ----------
-    lags
-        Where the displacement is wanted (negative lags: `parity`).
-    nu
-        Poisson's ratio.
-    component, load
-        Directions of the displacement and of the traction on the body: 1, 2 or 3 (> 0 into the body).
-    z
-        Depth >= 0 in the unit of hx. Where loads repeat 0, and u along the load is zero at |x| = period hy/2.
-
-    Returns
-    -------
-    Array
-        (nx, ny) in the unit of hx: displacement times mu per traction.
-
-    Examples
-    --------
     In the middle of a square the pressure 1 causes u_z = (1 - nu)/mu 2 ln(1 + sqrt(2))/pi times the side
     (Love):
 

@@ -71,6 +71,14 @@ def _of_cell(x: Array, order: int, point: float) -> Array:
     return np.asarray(sign * x**order * np.sinc(x / (2 * pi)) * np.cos(point * x))
 
 
+def _of_cells(waves: Sequence[Array], sums: Sums, aspect: float, point: float) -> list[dict[int, Array]]:
+    """`_of_cell` along x and y, of each power there is."""
+    return [
+        {n: _of_cell(k, n, point) / side**n for n in {(term[1], term[2])[axis] for term in sums}}
+        for axis, (k, side) in enumerate(zip(waves, (1.0, aspect), strict=True))
+    ]
+
+
 def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: float = 0.0) -> Array:
     """Entries of sums of (a), (entries, n_x // 2 + 1, n_y // 2 + 1), real: without (-i)^(odd_x + odd_y).
     period: its cells, hx = 1; radial: the functions of k in the sums; depth: the least z in hx; point: means
@@ -80,9 +88,9 @@ def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: f
     k = np.hypot(sides[0][:, None], sides[1] / aspect)
     k[0, 0] = 1.0
     out, functions = np.zeros((1 + max(term[0] for term in sums), *k.shape)), radial(k)
+    of_x, of_y = _of_cells(sides, sums, aspect, point)
     for entry, a, b, function, factor in sums:
-        of_x, of_y = _of_cell(sides[0], a, point), _of_cell(sides[1], b, point) / aspect**b
-        out[entry] += factor * of_x[:, None] * functions[function] * of_y
+        out[entry] += factor * of_x[a][:, None] * functions[function] * of_y[b]
     count, aliases = _aliases(aspect, sums, radial, depth=depth, point=point)
     between = [at_nodes(side / pi, count) for side in sides] if aliases else []
     for (entry, _, _, _, factor), found in zip(sums, aliases, strict=False):
@@ -91,7 +99,7 @@ def repeated(period: Lags, sums: Sums, radial: Radial, *, depth: float, point: f
     return out
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=256)  # of the layers of a body, each some 0.1 MB at most
 def _aliases(
     aspect: float, sums: Sums, radial: Radial, *, depth: float, point: float
 ) -> tuple[int, list[Array]]:
@@ -109,10 +117,10 @@ def _aliases(
     functions = radial(np.hypot(waves[0][:, :, None, None], waves[1] / aspect))
     for each in functions:
         each[:, most[0], :, most[1]] = 0.0  # k itself
+    of_x, of_y = _of_cells(waves, sums, aspect, point)
     for _, a, b, function, _ in sums:
-        of_x = _of_cell(waves[0], a, point) * ends[0]
-        of_y = _of_cell(waves[1], b, point) * ends[1] / aspect**b
-        found = np.einsum("xs,xsyt,yt->xy", of_x, functions[function], of_y, optimize=True)
+        by_y = (of_x[a] * ends[0])[:, None] @ functions[function].reshape(*waves[0].shape, -1)
+        found = (by_y.reshape(-1, *waves[1].shape) * (of_y[b] * ends[1])).sum(axis=-1)
         found = np.concatenate([found, (-1) ** a * found[::-1]])
         out.append(np.concatenate([found, (-1) ** b * found[:, ::-1]], axis=1))
     return count, out

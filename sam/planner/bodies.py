@@ -312,50 +312,21 @@ def hertz_semi_axes(scene: Scene) -> tuple[float, float]:
 
     The radius twice for a punch and for a given Hertz pressure; half the sides of the patch for a plane; half
     the width and half the length for a cylinder.
-
-    Parameters
-    ----------
-    scene
-        Any valid scene.
-
-    Returns
-    -------
-    tuple of float
-        a and b in m.
     """
     return Bodies(scene).axes
 
 
 def expected_force(scene: Scene) -> float:
     """The force in N at the peak: the given one, or an estimate from the approach, from which the grid of a
-    smooth scene is chosen.
-
-    Parameters
-    ----------
-    scene
-        Any valid scene with a counter-body.
-
-    Returns
-    -------
-    float
-        In N. Of a body that yields not more than its fully plastic contact bears: a^2 = 2 R approach, and 3
-        times the yield stress at the strain 0.2 a/R (Tabor 1951).
+    smooth scene is chosen. Of a body that yields not more than its fully plastic contact bears: a^2 = 2 R
+    approach, and 3 times the yield stress at the strain 0.2 a/R (Tabor 1951).
     """
     return Bodies(scene).force
 
 
 def misfit_zone(scene: Scene) -> float:
-    """Radius of the plastic zone about a misfit sphere in an infinite body, from which the grid is chosen.
-
-    Parameters
-    ----------
-    scene
-        Any valid scene.
-
-    Returns
-    -------
-    float
-        In m; 0 where nothing yields, as in an elastic body, and without a misfit sphere.
+    """Radius in m of the plastic zone about a misfit sphere in an infinite body, of which the grid is chosen;
+    0 where nothing yields, and without a misfit sphere.
     """
     return Bodies(scene).zone
 

@@ -33,23 +33,8 @@ STRONG = 3.0  # coefficient of friction, beyond that in air, that may keep a con
 
 
 def plan(scene: Scene) -> Plan:
-    """Plan the solve of a scene: what runs, on which grid, through which load steps, and what is left out and
-    why.
-
-    Parameters
-    ----------
-    scene : Scene
-        A scene that `check` allows.
-
-    Returns
-    -------
-    Plan
-        All that the solution needs. The solver executes it.
-
-    Raises
-    ------
-    ValueError
-        For a map of friction that is of another grid.
+    """The plan of a scene that `check` allows: what runs, on which grid, through which load steps, and what
+    is left out and why. ValueError for a map of friction that is of another grid.
     """
     return plan_of(Bodies(scene))
 
@@ -68,10 +53,18 @@ def plan_of(bodies: Bodies) -> Plan:
         film = FilmOnCells(FilmLaw.of(friction), grid.shape, visited)
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
-        smoothing = scene.wear.smoothing_window, scene.wear.smoothing_order
-        keys = {"roof_falls": scene.wear.roof == "falls", "fills": scene.wear.smoothing_fills}
-        keys["periodic"] = grid.periodic
-        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear.interpolate, *smoothing, **keys)
+        wear = WearLaw(
+            grid.shape,
+            grid.hx,
+            grid.hy,
+            limits,
+            scene.wear.interpolate,
+            scene.wear.smoothing_window,
+            scene.wear.smoothing_order,
+            grid.wraps,
+            roof_falls=scene.wear.roof == "falls",
+            fills=scene.wear.smoothing_fills,
+        )
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,
@@ -228,34 +221,13 @@ def remedies_of(scene: Scene) -> Remedies:
 
 
 def left_out(scene: Scene) -> list[LeftOut]:
-    """The stages that a scene does not need, as its plan has them.
-
-    Parameters
-    ----------
-    scene : Scene
-        A scene that `check` allows.
-
-    Returns
-    -------
-    list of LeftOut
-        The name of each stage, and why it is left out.
-    """
+    """The stages that a scene does not need, and why, as its plan has them."""
     return plan(scene).left_out
 
 
 def choose_grid(scene: Scene) -> CellGrid:
-    """The grid of a scene, as its plan has it.
-
-    Parameters
-    ----------
-    scene : Scene
-        A scene that `check` allows.
-
-    Returns
-    -------
-    CellGrid
-        Cells and depths in m: those of [grid], and what it leaves out chosen from the contact and the plastic
-        zone that are to be expected.
+    """The cells and depths of a scene, as its plan has them: those of [grid], and what it leaves out chosen
+    from the contact and the plastic zone that are to be expected.
     """
     return plan(scene).grid
 
@@ -265,20 +237,12 @@ class UnsupportedScene(ValueError):  # noqa: N818 - the name that callers of bot
 
 
 def check(scene: Scene) -> None:
-    """Refuse a scene that the model cannot solve.
+    """Raise UnsupportedScene for a scene that the model cannot solve.
 
-    Parameters
-    ----------
-    scene : Scene
-        Any valid scene.
-
-    Raises
-    ------
-    UnsupportedScene
-        For a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
-        body; for no force on a shape from which no size of the grid follows; for a plastic scene whose cells
-        are so small that layers as thick would be too many; for a rounded edge that the cells do not resolve;
-        for a surface of which only the digest is known.
+    That is for a coating where anything yields, as the coefficients of plastic strain hold for a homogeneous
+    body; for no force on a shape from which no size of the grid follows; for a plastic scene whose cells are
+    so small that layers as thick would be too many; for a rounded edge that the cells do not resolve; for a
+    surface of which only the digest is known, or that does not repeat as it is to.
     """
     check_bodies(Bodies(scene))
 

@@ -20,7 +20,7 @@ from sam.elastic.problem import ElasticProblem
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.box import edge_reached, first_extent, grown, holding
-from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS
+from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS, Problem
 from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
@@ -55,9 +55,6 @@ from sam.schedule import Load, Target
 from sam.tribofilm.state import TribofilmState
 
 MOST_CUTS = 6  # halvings of a load step: a part is then 1/64 of it
-# Tolerance of a step after which the tribofilm is tested first, before that of the solved step: a small
-# running-in takes 12 operator applications with 0.01, 11 with 0.1 and 10 with 1.
-FIRST_TEST = 0.1
 LONGER = "longer plastic iteration"
 """Note of a load step that is made so."""
 
@@ -157,15 +154,21 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
     committed state until box and film stay; None and a record that has ended if the grid cannot
     hold it.
     """
-    law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
-    if law is not None and film is not None and track is not None:
-        film = law.entered(film, track.clock(record.targets[0].cycle, load))
-    before = film
+    before = film = _film_before(model, record, load)
     guess, start = record.guess(load), start_of(model, record, load)
-    until = model.tolerance if film is None else max(FIRST_TEST, model.tolerance)
+
+    def changed(trial: Trial) -> Problem | None:
+        """The problem with the friction that a trial makes, None if the film stays as it is."""
+        nonlocal film
+        tried, film = film, _film_after(model, record, trial, before=before, tried=film)
+        stays = tried is None or film is None or film.film.failed is tried.film.failed
+        return None if stays else model.problem(record.extent, film, record.wear)
+
     while True:
         problem = replace(model.problem(record.extent, film, record.wear), longer=record.longer)
-        trial = problem.step(record.state, load, guess=guess, start=start, tolerance=until)
+        trial = problem.step(
+            record.state, load, guess=guess, start=start, retest=None if film is None else changed
+        )
         if not trial.converged:
             return record, trial
         extent = grown(record.extent, trial, model.grid)
@@ -177,24 +180,39 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
         if model.leaves_grid(record.extent.window, trial.pressure):
             return _ended(record, Status.CONTACT_AT_GRID_EDGE, place, Sides(beside=True)), None
-        tested = film
-        if law is not None and film is not None and before is not None:
-            pressure = np.zeros((model.grid.nx, model.grid.ny))
-            pressure[record.extent.window.slices] = trial.pressure * model.unit
-            strain = model.surface_strain(
-                record.extent, trial.stress, record.state.material.strain + trial.increment.strain
-            )
-            tested = law.tested(before, film, strain, pressure=pressure, sign=trial.load.sign)
-        film_stays = tested is None or film is None or tested.film.failed is film.film.failed
-        film = tested
-        if film_stays and trial.history[-1] <= model.tolerance:
+        if changed(trial) is None:
             after, extent = _beside(model, committed(model, record, trial, film), trial)
             if extent != record.extent:
                 return attempt(model, _enlarged(model, record, extent), load)
             return after, trial
-        guess, start = trial.change(record.state), trial.pressure  # with more friction or more exactly
-        until = model.tolerance if film_stays else until
+        guess, start = trial.change(record.state), trial.pressure  # the paper's loops, with more friction
         del trial  # its fields are large
+
+
+def _film_before(model: Model, record: Progressed, load: Load) -> TribofilmState | None:
+    """The film at the beginning of a step."""
+    law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
+    if law is None or film is None or track is None:
+        return film
+    return law.entered(film, track.clock(record.targets[0].cycle, load))
+
+
+def _film_after(
+    model: Model,
+    record: Progressed,
+    trial: Trial,
+    *,
+    before: TribofilmState | None,
+    tried: TribofilmState | None,
+) -> TribofilmState | None:
+    """The film at the end of a trial that was made with the friction of `tried`; before: the step."""
+    law, extent, pressure = model.plan.tribofilm, record.extent, np.zeros((model.grid.nx, model.grid.ny))
+    if law is None or tried is None or before is None:
+        return tried
+    pressure[extent.window.slices] = trial.pressure * model.unit
+    plastic = record.state.material.strain + trial.increment.strain
+    strain = model.surface_strain(extent, trial.stress, plastic)
+    return law.tested(before, tried, strain, pressure=pressure, sign=trial.load.sign)
 
 
 def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:

@@ -118,6 +118,10 @@ LONG_ITERATIONS = 600
 # the contact is found too large. An evaluation takes as long as tens of contact iterations: none is repeated
 # for a better contact.
 CONTACT_SHARE = 1e-2
+# Tolerance of the iterate with which the tribofilm is tested first, before that of the solved step: a
+# running-in on 64 x 64 cells, two cycles, takes 125 operator applications with 0.01, 102 with 0.1, 81 with 1
+# and 10; the friction is the same to 2e-6.
+FIRST_TEST = 1.0
 
 
 @dataclass(frozen=True)
@@ -192,13 +196,15 @@ class Problem:
         *,
         guess: Change | None = None,
         start: Array | None = None,
-        tolerance: float | None = None,
+        retest: Callable[[Trial], Problem | None] | None = None,
     ) -> Trial:
         """The end of a load step from a committed state, converged or not: a fixed point of the increment x,
         (6, n) of the cells that may flow, of those that the symmetry keeps. guess, start: change and p_hat
-        before.
+        before; retest: of an iterate within FIRST_TEST, and of the last (without its residual fields), gives
+        the problem with other friction that the iteration goes on with, or None.
         """
-        K, goal = self.operator, self.tolerance if tolerance is None else tolerance
+        K, problem, goal = self.operator, self, self.tolerance
+        goal = max(FIRST_TEST, goal) if retest is not None else goal
         window, most = (LONG_WINDOW, LONG_ITERATIONS) if self.longer else (WINDOW, ITERATIONS)
         anderson = Anderson(window, np.sqrt(SHEAR)[:, None])
         flow, history, accuracy = self.flow(state), list[float](), CONTACT_SHARE * self.tolerance
@@ -213,15 +219,36 @@ class Problem:
             x = guess.ratio * spread(increment.points.strain.mean(axis=1), increment.cells, flow.cells)
         displacement = residual.displacement
         pressure = state.pressure if start is None else start
+
+        def reached() -> Trial:
+            return Trial(
+                load=problem.pressure.loaded(load, pressure),
+                increment=whole(K.transforms, returned.increment()),
+                stress=K.whole(stress),
+                residual=residual,
+                pressure=pressure,
+                yield_excess=returned.yield_excess,
+                flow_residual=returned.flow_residual,
+                history=tuple(history),
+                converged=bool(worst <= goal and np.isfinite(worst)),
+                rise=load.rise(state.load),
+                goal=goal,
+            )
+
         while True:
-            pressure = self.pressure(displacement, load, pressure, accuracy)  # paper Eq. 9 and 10
-            stress = K.keep(residual.stress) + self.stress(pressure, load, response)  # paper Eq. 4 and 7
+            pressure = problem.pressure(displacement, load, pressure, accuracy)  # paper Eq. 9 and 10
+            stress = K.keep(residual.stress) + problem.stress(pressure, load, response)  # paper Eq. 4 and 7
             returned = flow.returned(x, stress)  # paper Eq. 8, at the points of each cell
-            worst = returned.worst(goal)
+            x, worst = returned.x, returned.worst(goal)
             history.append(worst)
+            if worst <= goal and retest is not None:
+                if (changed := retest(reached())) is not None:
+                    problem, history, anderson.last = changed, [], []
+                    continue
+                goal = self.tolerance
+                history[-1] = worst = returned.worst(goal)
             if worst <= goal or len(history) > most:
                 break
-            x = returned.x
             own = np.repeat(stiffness_of_parts(K.own_stress), flow.counts, axis=-1)
             limit = flow.flow.limit.mean(axis=0)
             image = preconditioned(x, returned.image, limit, m=self.stiffness, own=own)
@@ -234,20 +261,8 @@ class Problem:
             self.counters.plastic_iterations += 1
         if response is not None:  # of the stress, what the load does not make: paper Eq. 4
             del response, anderson
-            residual = ResidualFields(K.whole(stress - self.stress(pressure, load)), displacement)
-        return Trial(
-            load=self.pressure.loaded(load, pressure),
-            increment=whole(K.transforms, returned.increment()),
-            stress=K.whole(stress),
-            residual=residual,
-            pressure=pressure,
-            yield_excess=returned.yield_excess,
-            flow_residual=returned.flow_residual,
-            history=tuple(history),
-            converged=bool(worst <= goal and np.isfinite(worst)),
-            rise=load.rise(state.load),
-            goal=goal,
-        )
+            residual = ResidualFields(K.whole(stress - problem.stress(pressure, load)), displacement)
+        return reached()
 
 
 class Anderson:
@@ -273,7 +288,8 @@ class Anderson:
                 self.steps, self.changes, self.last = (
                     [spread(each, self.cells, cells) for each in rows] for rows in kinds
                 )
-            self._add(image - self.last[0], distance - self.last[1])
+            if self.last:
+                self._add(image - self.last[0], distance - self.last[1])
         self.last, self.cells = [image, distance], cells
         n = len(self.steps)
         if not n:

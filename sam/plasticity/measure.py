@@ -16,7 +16,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from sam.arrays import ROUNDING, Array, Mask
@@ -514,8 +513,8 @@ def _summit(x: Array, y: Array, k: int, same: NDArray[np.bool_]) -> tuple[float,
     if 0 <= fourth < len(y) and same[fourth] and y[fourth] > 0:
         ends[(side + 1) // 2] = fourth
     near = slice(ends[0], ends[1] + 1)
-    curve = Polynomial.fit(x[near] - x[k], y[near] - y[k], deg=ends[1] - ends[0]).convert()
-    _, slope, bend, third = (*curve.coef, 0.0, 0.0, 0.0)[:4]
+    powers = np.vander(x[near] - x[k], increasing=True)
+    _, slope, bend, third = (*np.linalg.solve(powers, y[near] - y[k]), 0.0)[:4]
     root = float(np.sqrt(max(bend**2 - 3 * slope * third, 0.0))) - bend
     place = float(slope / root) if root > 0 else 0.0  # the zero of the slope where the curve bends down
-    return place, float(curve(place) - curve(0.0))
+    return place, float(place * (slope + place * (bend + place * third)))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from sam.plasticity.load_step import (
     Problem,
 )
 from sam.plasticity.paper import PaperProblem
-from sam.plasticity.spectra import SINGLE, BoxOperator, PeriodicOperator
+from sam.plasticity.spectra import BoxOperator, PeriodicOperator
 from sam.plasticity.state import Extent
 from sam.scene.section import stated
 from sam.scene.yield_curve import Strength
@@ -207,12 +208,11 @@ class Model:
         exchange, asked = self._exchange(extent.window), self.asked_operator
         repeats = self.plan.period is not None
         box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
-        single, period = self.tolerance >= SINGLE, self.plan.period
-        of_cells = self.cuboids(extent), self.plan.pair.body.shear, counters
+        period, of_cells = self.plan.period, (self.cuboids(extent), self.plan.pair.body.shear, counters)
+        how: Any = {"tolerance": self.tolerance, "swept": box.swept}
         if period is not None:
-            return PeriodicOperator(period, *of_cells, single=single, swept=box.swept)
-        mirror = self._mirror(extent.window)
-        return BoxOperator(*of_cells, single=single, mirror=mirror, exchange=exchange, swept=box.swept)
+            return PeriodicOperator(period, *of_cells, **how)
+        return BoxOperator(*of_cells, mirror=self._mirror(extent.window), exchange=exchange, **how)
 
     def _mirror(self, window: Window) -> tuple[bool, bool]:
         """Whether fields are mirrored in x and in y: on a box about the middle, x without friction."""

@@ -11,6 +11,7 @@ intermediate stress.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,9 +51,9 @@ class PaperProblem(Problem):
         *,
         guess: Change | None = None,
         start: Array | None = None,
-        tolerance: float | None = None,
+        retest: Callable[[Trial], Problem | None] | None = None,
     ) -> Trial:
-        """A step from a committed state, where the loops start; guess, start, tolerance are not used."""
+        """A step from a committed state, where the loops start; guess, start, retest are not used."""
         # the loops are of cells, as printed
         begun = MaterialFields(state.material.strain, state.material.peeq)
         zero = np.zeros_like(begun.strain), np.zeros_like(begun.peeq)

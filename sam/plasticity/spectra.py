@@ -20,7 +20,7 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
@@ -49,8 +49,10 @@ ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (
 SIGN = np.where(TWICE, -1.0, 1.0)  # of what is stored
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
-# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
+# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough: for
+# contact and transforms too, and for the matrices between layers alone
 SINGLE = 5e-5
+ROUNDED = 1e-6
 
 
 class BoxSpectra:
@@ -67,6 +69,7 @@ class BoxSpectra:
         *,
         cells: tuple[int, int] = (0, 0),
         error: float = 0.0,
+        rounded: bool = False,
         period: PeriodicHalfSpaces | None = None,
     ):
         self.period = period
@@ -88,13 +91,14 @@ class BoxSpectra:
             self.layers: Reals | SweptLayers = SweptLayers(self, waves, cuboids, error=error, real=self.real)
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
-            self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
+            real = np.float32 if rounded else self.real
+            self.layers = kept(repr((cuboids, exchange)), shape, real, lambda: self._dense(shape, real))
 
-    def _dense(self, shape: tuple[int, int, int]) -> Reals:
+    def _dense(self, shape: tuple[int, int, int], real: DTypeLike) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
-        out = np.empty(shape, dtype=self.real)
-        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
+        out = np.empty(shape, dtype=real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -157,19 +161,33 @@ class BoxSpectra:
             if self.period is not None:
                 out[0] = self.period.mean_residual(strain[0], self.cuboids.nu)
             return out
+        strain = strain.astype(self.layers.dtype, copy=False)
         if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
-        return np.asarray(self.layers @ strain)
+            product = np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None]
+        else:
+            product = self.layers @ strain
+        return np.asarray(product, dtype=self.real)
 
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        faces, means = self.cuboids.depths, functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
-        stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
-        out = np.zeros((len(faces) - 1, 36, len(faces) - 1, 1, 1))
-        for i, row in enumerate(out):
-            stress.of(i, row)
-        return out.diagonal(axis1=0, axis2=2).reshape(6, 6, -1)
+        if isinstance(self.layers, SweptLayers):
+            faces = self.cuboids.depths
+            means = functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
+            stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
+            out = np.zeros((36, len(faces) - 1, 1, 1))
+            for i in range(len(faces) - 1):
+                own = slice(i, i + 1)
+                stress.of(i, out[:, own], own)
+            return out.reshape(6, 6, -1)
+        # the transform back at no lag; wave numbers but 0 and N stand for their opposite too
+        weight = np.outer(*(np.where(np.arange(n + 1) % n, 1 / n, 0.5 / n) for n in self.half))
+        exchange = not isinstance(self.stored, slice)
+        weight[np.diag_indices(len(weight) if exchange else 0)] /= 2
+        diagonal = self.layers.reshape(self.waves, 6, self.cuboids.layers, 6, -1)
+        found = np.einsum("p,pikjk->ijk", weight.ravel()[self.stored], diagonal)
+        found *= np.where(np.any(ODD_LAGS, axis=1), 0.0, SIGN).reshape(6, 6, 1)
+        return found + found[EXCHANGED][:, EXCHANGED] if exchange else found
 
     def _of_waves(self, waves: Array) -> Reals:
         """Spectra (6, n_layers, N_x + 1, N_y + 1) as `_of_surface` has them."""
@@ -233,8 +251,8 @@ class InWaves(NamedTuple):
 
 class BoxOperator:
     """Stress in the cells of a box and u_z of its surface, of plastic strain and loads, on the cells that
-    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; single: precision, 1e-7 of the largest
-    stress, in half the time; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
+    `keep` leaves. box: cells as lags, in m, layers from 0; mu in Pa; tolerance: of the iteration, from
+    which the precision follows; mirror: of all fields in x (with y) and y; exchange: of x and y, half of the
     wave numbers give all; swept: error of the stress/mu of a unit strain by sweeps over the layers in place
     of matrices between all of them.
     """
@@ -247,12 +265,12 @@ class BoxOperator:
         mu: float,
         counters: Counters,
         *,
-        single: bool = False,
+        tolerance: float = 0.0,
         mirror: tuple[bool, bool] = (False, False),
         exchange: bool = False,
         swept: float = 0.0,
     ):
-        lags = box.lags
+        lags, single, rounded = box.lags, tolerance >= SINGLE, tolerance >= ROUNDED
         self.transforms = Transforms(
             lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
         )
@@ -265,7 +283,7 @@ class BoxOperator:
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, rounded=rounded, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 

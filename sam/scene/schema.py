@@ -187,65 +187,40 @@ class Scene(Section):
         periodic, shape = at("grid.periodic"), at("counterbody.shape")
         line, repeats, along = shape == "cylinder", periodic == "xy", periodic == "y"
         patch, axis = 'grid.periodic = "xy"', 'counterbody.shape = "cylinder"'
+        either, only = f"with {patch if repeats else axis}", f"only together with {patch}"
         summits = 'counterbody.shape = "flat", whose summits or those of the body repeat'
         datum = f"a force with {axis}: the approach of a line contact has no absolute value"
         rough = has("surface") or has("counterbody.surface")
-        absent = (
-            ("body.coating", has("body.coating")),
-            ("loading.path", repeats and has("loading.path")),
-            ("friction.path", line and has("friction.path")),
-        )
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
         pair = isinstance(cells, list | tuple) and len(cells) == 2 and hasattr(cells[1], "__float__")
         rows = cells[1] if pair else 0
         loop, plastic = at("solver.method") == "paper", has("body.plasticity")
+        bordered, several = at("grid.border") == "relief", line and not rough and rows > 1
+        across, moves = line and rough and rows > 1 and not along, line and rough and has("loading.path")
+        lateral, alike = (
+            has("loading.lateral"),
+            f"one cell along y with a smooth {axis}: all is the same there",
+        )
         yield from broken(
-            *(
-                (there and (repeats or line), key, f"with {patch if repeats else axis} {NOT_YET}")
-                for key, there in absent
-            ),
+            ((repeats or line) and has("body.coating"), "body.coating", f"{either} {NOT_YET}"),
+            (repeats and has("loading.path"), "loading.path", f"{either} {NOT_YET}"),
+            (line and has("friction.path"), "friction.path", f"{either} {NOT_YET}"),
             (repeats and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
-            (
-                repeats and at("grid.border") == "relief",
-                "grid.border",
-                f'"free" with {patch}: it has no border',
-            ),
-            (line and rough and rows > 1 and not along, "grid.periodic", f'"y" with {axis} on cells along y'),
-            (
-                line and rough and has("loading.path"),
-                "loading.path",
-                f"with {axis} and a rough surface {NOT_YET}",
-            ),
-            (line and at("grid.border") == "relief", "grid.border", f'"free" with {axis}'),
-            *(
-                (has(f"{table}.taper") and not repeats, f"{table}.taper", f"only together with {patch}")
-                for table in ("surface", "counterbody.surface")
-            ),
+            (repeats and bordered, "grid.border", f'"free" with {patch}: it has no border'),
+            (across, "grid.periodic", f'"y" with {axis} on cells along y'),
+            (moves, "loading.path", f"with {axis} and a rough surface {NOT_YET}"),
+            (line and bordered, "grid.border", f'"free" with {axis}'),
+            (has("surface.taper") and not repeats, "surface.taper", only),
+            (has("counterbody.surface.taper") and not repeats, "counterbody.surface.taper", only),
             (along and not line, "grid.periodic", f'"y" only together with {axis}'),
             (repeats and line, "grid.periodic", f'"y" with {axis}'),
             (line and has("loading.approach"), "loading.approach", datum),
-            (
-                line and not rough and rows > 1,
-                "grid.cells",
-                f"one cell along y with a smooth {axis}: all is the same there",
-            ),
+            (several, "grid.cells", alike),
             (not line and 0 < rows < 3, "grid.cells", f"3 or more cells along y, 1 only with {axis}"),
             (line and swept, "solver.operator", f'"dense" with {axis}'),
-            (
-                (repeats or line) and loop,
-                "solver.method",
-                f'"backward-euler" with {patch if repeats else axis}',
-            ),
-            (
-                has("loading.mean_pressure") and not repeats,
-                "loading.mean_pressure",
-                f"only together with {patch}",
-            ),
-            (
-                has("loading.lateral") and not (repeats and plastic),
-                "loading.lateral",
-                f"only together with {patch} and [body.plasticity]",
-            ),
+            ((repeats or line) and loop, "solver.method", f'"backward-euler" {either}'),
+            (has("loading.mean_pressure") and not repeats, "loading.mean_pressure", only),
+            (lateral and not (repeats and plastic), "loading.lateral", f"{only} and [body.plasticity]"),
         )
 
     @property

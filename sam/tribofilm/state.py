@@ -2,9 +2,9 @@
 """The tribofilm on a grid of cells, solved together with the contact in each load step: it decides where
 friction is low.
 
-Within a load step the film is tested with the pressure and the surface strain of a solved contact. Where it
-fails, friction becomes high, which changes both; so the step is solved again, from where it began, until no
-further cell fails. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
+Within a load step the film is tested with the pressure and the surface strain of a contact. Where it fails,
+friction becomes high, which changes both; so the iteration of the step goes on with that, until no further
+cell fails at its end. Failures only add up, hence this ends. A failure lasts until the end of the cycle; the
 next one begins with a new film. Bosman & Schipper 2011, section 4. Below a counter-body that moves each visit
 of it to a cell begins with a whole film, which may thin by what grew while the cell was out of contact.
 

@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementHex1, ElementVector, MeshHex, MeshQuad
 from skfem.helpers import ddot, sym_grad
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid, half_plane, surface_weights
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
 from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
@@ -16,6 +16,7 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, PlaneSolid, surface_weights, tensor_mesh
 from fem_reference.common.recovery import continued
 from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
@@ -44,6 +45,54 @@ def cube(n=2, twist=0.08, **options):
     bump = twist * np.prod(np.sin(np.pi * mesh.p), axis=0)
     mesh = MeshHex(mesh.p + bump * np.array([[1.0], [-0.7], [0.4]]), mesh.t)
     return HexSolid(mesh, Elastic(YOUNG, POISSON), **options)
+
+
+def solved_from_boundary(solid, exact):
+    """Displacements with the exact values (n_dofs,) on the whole boundary."""
+    fixed = solid.basis.get_dofs().all()
+    free, K = np.setdiff1d(np.arange(solid.size), fixed), solid.stiffness.tocsc()
+    u = np.where(np.isin(np.arange(solid.size), fixed), exact, 0.0)
+    u[free] = spsolve(K[free][:, free], -K[free][:, fixed] @ u[fixed])
+    return u
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49])
+def test_patch_of_rings_is_exact_under_uniform_strain(poisson):
+    """e_rr = e_tt = a, e_zz = b on distorted elements, up to rounding, which grows with 1/(1 - 2 nu)."""
+    a, b, shift = 0.2, -0.5, 0.1
+    solid = ring(4, poisson=poisson)
+    r, z = solid.basis.doflocs
+    radial = np.isin(np.arange(solid.size), solid.basis.get_dofs(elements=True).all("u^1"))
+    exact = np.where(radial, a * r, b * z + shift)
+    u = solved_from_boundary(solid, exact)
+    assert np.abs(u - exact).max() < 1e-12
+    shear, lame = YOUNG / (2 * (1 + poisson)), YOUNG * poisson / ((1 + poisson) * (1 - 2 * poisson))
+    radial, axial = 2 * shear * a + lame * (2 * a + b), 2 * shear * b + lame * (2 * a + b)
+    expected = np.array([radial, radial, axial, 0.0])[:, None, None]
+    assert np.abs(solid.stress(u) - expected).max() < 1e-11
+    force = solid.internal_force(solid.stress(u))
+    assert np.abs(force - solid.stiffness @ u).max() < 1e-13 * np.abs(force).max()
+
+
+SECTION = PlaneSolid(ring(4).basis.mesh, Elastic(YOUNG, POISSON))
+
+
+@pytest.mark.parametrize("solid", [cube(3), SECTION], ids=["hexahedra", "plane strain"])
+def test_patch_is_exact_under_uniform_strain(solid):
+    gradient = np.array([[1.0, 0.3, -0.2], [0.1, -0.5, 0.4], [0.25, 0.6, 0.8]])
+    axes = (0, 2) if solid is SECTION else (0, 1, 2)
+    exact, places = np.zeros(solid.size), solid.basis.doflocs
+    for k, row in enumerate(axes):
+        dofs = solid.basis.get_dofs(elements=True).all(f"u^{k + 1}")
+        exact[dofs] = gradient[row, axes] @ places[:, dofs]
+    u = solved_from_boundary(solid, exact)
+    assert np.abs(u - exact).max() < 1e-13
+    e = gradient + gradient.T
+    strain = np.array([*np.diag(e) / 2, e[1, 2], e[0, 2], e[0, 1]])
+    strain = strain[[0, 1, 2, 4]] * [1, 0, 1, 1] if solid is SECTION else strain
+    expected = stiffness_tensor(YOUNG, POISSON, len(strain) - 3) @ strain
+    assert np.abs(solid.stress(u) - expected[:, None, None]).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(solid.internal_force(solid.stress(u)) - solid.stiffness @ u).max() < 1e-12
 
 
 def test_stiffness_equals_the_weak_form_of_scikit_fem():
@@ -123,7 +172,7 @@ def test_mesh_lines(lines, cells, box):
         h = np.diff(x)
         assert (h > 0.0).all() and (h[1:] / h[:-1])[x[2:] > 1.0 + 1e-9].max() < 2.0
     assert np.abs(r - 1.0).min() < 1e-14
-    mesh = half_plane(r, z)
+    mesh = tensor_mesh(r, z, half=True)
     sizes = {name: facets.size for name, facets in mesh.boundaries.items()}
     assert sizes == {"axis": z.size - 1, "surface": r.size - 1, "far": r.size + z.size - 2}
 

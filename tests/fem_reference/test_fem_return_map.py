@@ -6,10 +6,10 @@ import pytest
 from scipy.optimize import brentq
 from skfem import MeshQuad
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises
 from fem_reference.common.plasticity import J2, CurveInUnits, History, Parts
+from fem_reference.common.quadrilaterals import AxisymmetricSolid
 from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.material_point import FemPoint, Specimen
 

@@ -15,11 +15,10 @@ from fem_reference.common import loading
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import run
-from fem_reference.common.mesh_lines import two_sided
+from fem_reference.common.mesh_lines import Lines, two_sided
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import recovery
 from fem_reference.spatial.hexahedra import HexSolid, block
-from fem_reference.spatial.lines import Lines
 from fem_reference.spatial.model import build
 from fem_reference.spatial.multigrid import Preconditioner
 from fem_reference.spatial.planner import plan

@@ -8,9 +8,9 @@ from rounding import EPS
 from scipy.optimize import brentq
 from skfem import MeshQuad
 
-from fem_reference.axisymmetric.elements import AxisymmetricSolid
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import J2, History
+from fem_reference.common.quadrilaterals import AxisymmetricSolid
 from fem_reference.common.schedule import Load
 from fem_reference.finite_strain import model as study
 from fem_reference.finite_strain.kinematics import (

@@ -25,10 +25,10 @@ from fem_reference.common.hertz import (
     scales,
 )
 from fem_reference.common.layered_force import _across
+from fem_reference.common.mesh_lines import Lines
 from fem_reference.common.plasticity import J2, History
 from fem_reference.common.schedule import Load as FemLoad
 from fem_reference.spatial import recovery as spatial
-from fem_reference.spatial.lines import Lines
 from sam.contact.convolution import Counters
 from sam.contact.operators import CoatedPair
 from sam.contact.stress import von_mises

@@ -13,14 +13,7 @@ from sam import solve
 from sam.contact.convolution import Counters
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
-from sam.kernels.patches import (
-    ODD_Y,
-    STRESS,
-    Cuboids,
-    Lags,
-    displacement_coefficients,
-    stress_coefficients,
-)
+from sam.kernels.patches import ODD_Y, STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.plasticity.spectra import BoxOperator
 from sam.scene import Scene
 
@@ -113,12 +106,12 @@ def cylinder(p0=1e9, *, cells=None, length=2e-3, radius=10e-3, **tables):
     return Scene(counterbody={**shape, **tables.pop("other", {})}, **tables), a
 
 
-def test_a_cylinder_is_the_line_contact_of_hertz_with_the_stresses_of_mcewen():
+def test_a_cylinder_is_the_line_contact_of_hertz():
     errors = []
     for cells in (65, 129, 257):
         scene, a = cylinder(cells=cells)
         result = solve(scene)
-        found, axis, line = result.quantities, result.tables["axis"], result.tables["line"]
+        found, line = result.quantities, result.tables["line"]
         p0, line_load = 1e9, np.pi / 2 * a * 1e9
         # Johnson 1985, section 4.2, with the displacement zero at half of the length
         approach = 2 * line_load / (np.pi * MODULUS) * (np.log(2e-3 / a) + 0.5)
@@ -128,12 +121,6 @@ def test_a_cylinder_is_the_line_contact_of_hertz_with_the_stresses_of_mcewen():
         assert found["force_N"] == pytest.approx(line_load * 2e-3, rel=1e-9)
     assert np.log2(np.abs(errors[0]) / np.abs(errors[2])) / 2 == pytest.approx(2, abs=0.2)
     assert np.abs(errors[2]).max() < 2e-5
-    z = axis["z_m"] / a
-    s11, s33 = -(1 + 2 * z * z) / np.sqrt(1 + z * z) + 2 * z, -1 / np.sqrt(1 + z * z)
-    for name, exact in (("sxx_Pa", s11), ("syy_Pa", 0.3 * (s11 + s33)), ("szz_Pa", s33)):
-        assert axis[name] / p0 == pytest.approx(exact, abs=2e-5)
-    assert p0 / found["mises_max_Pa"] == pytest.approx(1.794, rel=3e-4)  # first yield, in yield stresses
-    assert found["mises_max_depth_m"] / a == pytest.approx(0.704, abs=1e-3)
     outside = np.abs(line["x_m"]) > 1.2 * a
     far = np.abs(line["x_m"][outside]) / a
     log = np.arccosh(far) - far * np.sqrt(far**2 - 1) + far**2  # beside Hertz's pressure

@@ -13,13 +13,7 @@ from sam.contact.normal import Search, solve_contact
 from sam.contact.periodic import PeriodicHalfSpaces
 from sam.grid.cells import Window
 from sam.grid.rough import step_across, tapered
-from sam.kernels.patches import (
-    STRESS,
-    Cuboids,
-    Lags,
-    displacement_coefficients,
-    stress_coefficients,
-)
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.kernels.waves import in_cells, load_waves
 from sam.plasticity.images import PeriodImages
 from sam.plasticity.spectra import BoxOperator, PeriodicOperator
@@ -113,7 +107,7 @@ STRAIN = np.random.default_rng(1).standard_normal((6, 5, 16, 12))
 
 
 def operator(box: Cuboids = BOX, bodies: PeriodicHalfSpaces = HELD) -> PeriodicOperator:
-    return PeriodicOperator(bodies, box, 1.0, Counters(), single=False, swept=1e-7)
+    return PeriodicOperator(bodies, box, 1.0, Counters(), swept=1e-7)
 
 
 def stress_of(box: BoxOperator, strain: np.ndarray) -> np.ndarray:

@@ -91,6 +91,24 @@ def test_local_friction_of_a_map_acts_where_it_is():
     assert found.quantities["friction_coefficient"] == pytest.approx(0.1 + 0.3 * share, rel=1e-12)
 
 
+def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_leaves(monkeypatch):
+    """Made again from its beginning with the film at its end, where no further cell fails."""
+    seen, committed = [], history.committed
+
+    def watched(model, now, trial, film):
+        seen.append((model, now, trial, film))
+        return committed(model, now, trial, film)
+
+    monkeypatch.setattr(history, "committed", watched)
+    sam.solve(running_in(film=FILM, wear=None, cycles=1))
+    failing = [each for each in seen if each[3].film.failed.sum() > each[1].tribofilm.film.failed.sum()]
+    for model, now, trial, film in failing:
+        again = model.problem(now.extent, film, None).step(now.state, trial.load)
+        off = 2 * model.plan.pair.body.shear * np.abs(again.increment.strain - trial.increment.strain).max()
+        assert off <= 5 * model.tolerance * model.plan.initial_yield.min()
+    assert failing and any(trial.plastic for _, _, trial, _ in failing)
+
+
 def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(monkeypatch):
     """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
     without friction, though unlike bodies were coupled by the traction where it had failed.

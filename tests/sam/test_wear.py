@@ -294,6 +294,21 @@ def test_of_the_cells_that_have_yielded_is_left_what_is_left_of_all(share, fills
     assert (wear.depth < 0).any() == (fills and bool(share))
 
 
+@pytest.mark.parametrize("wraps", [(True, True), (False, True), (True, False)])
+@pytest.mark.parametrize("fills", [False, True])
+def test_strain_shifted_where_all_repeats_wears_the_shifted_surface(wraps, fills):
+    """Across the border as inside; a direction that does not repeat has a border, which stays."""
+    peeq, faces = np.random.default_rng(7).random((3, 9, 7)), np.arange(4.0)
+    cells, shift = np.ones(peeq.shape, dtype=bool), tuple(3 * wrap for wrap in wraps)
+
+    def worn(peeq, wraps=wraps):
+        law = WearLaw((9, 7), 1.0, 1.0, StrainLimits(0.5, 0.5, 0.0), True, 5, 2, wraps, fills=fills)
+        return law.removed(law.fresh(), {}, faces, Window(0, 0, 9, 7), cells=cells, peeq=peeq)[0].depth
+
+    np.testing.assert_array_equal(worn(np.roll(peeq, shift, (1, 2))), np.roll(worn(peeq), shift, (0, 1)))
+    assert not np.array_equal(worn(peeq, (False, False)), worn(peeq))
+
+
 # cycles
 
 

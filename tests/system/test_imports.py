@@ -35,7 +35,7 @@ BAD = {
     ): ("sam.solver"),
     ("sam/kernels/primitives.py", "def f():\n    from sam.kernels import patches"): ".patches",
     ("fem_reference/common/contact.py", "from sam import solve"): "sam",
-    ("fem_reference/common/contact.py", "import fem_reference.spatial.lines"): "fem_reference.spatial.lines",
+    ("fem_reference/common/contact.py", "import fem_reference.spatial.area"): "fem_reference.spatial.area",
     ("verification/text/console.py", "from verification.suite import verify"): "verification.suite.verify",
     ("verification/text/console.py", "from sam.scene.units import UNITS"): "sam.scene.units",
 }
@@ -120,6 +120,8 @@ PYTHON = {
     | {"pint", "scipy", "fem_reference", "verification", "samfem"},
     "import sam\nsam.solve": PICTURES
     | {"rich", "jinja2", "verification", "samfem", "fem_reference", "scipy.optimize"},
+    "import fem_reference\nfem_reference.plan, fem_reference.UnsupportedScene": SOLVERS
+    | {"skfem", "scipy", "verification"},
     "import fem_reference\nfem_reference.solve": PICTURES | {"rich", "verification", "sam.solver"},
     "import samfem\nsamfem.__version__": {"numpy", "pandas", "sam", "verification"},
     "import samfem\nsamfem.Scene, samfem.solve": FEW | SOLVERS | {"pandas", "scipy", "pint", "rich", "skfem"},

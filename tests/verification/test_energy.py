@@ -12,8 +12,7 @@ from sam.scene.yield_curve import Linear, Swift, Tabulated
 from tests.system.test_repeated_loading import MELAN, pressed
 from verification.cases.energy.energy import row
 from verification.cases.recipes import Resolution, resolved_at
-from verification.energy import of_fem, of_sam
-from verification.energy.balance import Balance, along_path
+from verification.energy import Balance, along_path, balance_of_fem, balance_of_sam
 from verification.runs.models import FEM, FEM_3D, SAM, solve
 
 YIELD = 1e9
@@ -59,15 +58,15 @@ def test_the_work_along_a_path_is_exact_for_straight_parts():
 
 def test_an_elastic_counter_body_is_refused():
     other = CounterBody(shape="sphere", radius=RADIUS, young=210e9, poisson=0.3)
-    for balance in (of_sam.balance_of, lambda one: of_fem.balance_of(one, FEM)):
+    for of_model in (balance_of_sam, lambda one: balance_of_fem(one, FEM)):
         with pytest.raises(ValueError, match="counterbody"):
-            balance(sphere(6).model_copy(update={"counterbody": other}))
+            of_model(sphere(6).model_copy(update={"counterbody": other}))
 
 
 def test_a_given_pressure_in_space_is_refused():
     given = scene(loading={"prescribed": "hertz", "p0": YIELD, "radius": 1e-6})
     with pytest.raises(ValueError, match=r"loading\.prescribed"):
-        of_fem.balance_of(given, FEM_3D)
+        balance_of_fem(given, FEM_3D)
 
 
 def by_hand() -> Balance:
@@ -110,7 +109,7 @@ def pressed_twice(steps, model):
     grid = given.grid.model_copy(update={"cells": (13, 13), "layers": 10})
     fem = given.fem.model_copy(update={"cells_per_radius": 3})
     given = given.model_copy(update={"grid": grid, "fem": fem})
-    return given, of_sam.balance_of(given) if model == SAM else of_fem.balance_of(given, model)
+    return given, balance_of_sam(given) if model == SAM else balance_of_fem(given, model)
 
 
 def of_second_cycle(one: Balance) -> float:

@@ -1,13 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The verification cases: a file for each, or for several that differ in little, in the folder of its
-family.
-
-`<family>/<name>.toml` says the title, the question, the equations and what is claimed
-(`verification.rows`). Where it names a scene and models, sweeps or a frame, it needs nothing else but
-functions of the module of the same name beside it that it names; else that module measures: a subclass of
-`Case` and a tuple `CASES` of its instances.
-
-Used by the harness of the suite, by the lists of the command line and by tests.
+"""The verification cases, each of the file `<family>/<name>.toml` (`verification.rows`), with functions of
+the module of the same name beside it that it names; without scene and frame that module measures, by
+subclasses of `Case` in a tuple `CASES`.
 """
 
 from __future__ import annotations

@@ -22,8 +22,12 @@ from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
 from verification.text.console import number
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # loaded only where something is drawn or tabulated
+    from pandas import DataFrame
+
     from verification.figures.style import Drawing
+else:
+    DataFrame = Drawing = Any
 
 
 @dataclass(frozen=True)
@@ -38,10 +42,8 @@ class Plot:
 
 @dataclass(frozen=True)
 class View:
-    """A picture in space that a case asks for.
-
-    run: label of the run that it shows; picture: which one, see `verification.figures.space`; name: of its
-    file, led by that of the case.
+    """A picture in space that a case asks for. run: label of the run that it shows; picture: which one, see
+    `verification.figures.space`; name: of its file, led by that of the case.
     """
 
     run: str
@@ -54,9 +56,8 @@ class View:
 @dataclass(frozen=True)
 class Figure:
     """A drawn figure; paths relative to the report's folder, a picture in space has no csv. alt: what stands
-    in place of the picture; the caption describes it.
-
-    findings: what cannot be read in it, see `verification.figures.check`: the case has failed then.
+    in place of the picture; the caption describes it. findings: what cannot be read in it, see
+    `verification.figures.check`: the case has failed then.
     """
 
     title: str
@@ -83,9 +84,7 @@ class SmallTable:
 
 @dataclass
 class Outcome:
-    """What a case returns. values: gate id -> value; setup: (name, number with unit) for the reader; data:
-    for the pages, as JSON holds it.
-    """
+    """Of a case. values: gate id -> value; setup: (name, number with unit); data: for the pages, as JSON."""
 
     values: dict[str, Measured] = field(default_factory=dict)
     setup: list[tuple[str, str]] = field(default_factory=list)
@@ -96,9 +95,7 @@ class Outcome:
 
 
 class NotDrawnError(Exception):
-    """A figure could not be drawn. outcome: all that was found, with a finding in place of that figure and of
-    those after it.
-    """
+    """A figure could not be drawn. outcome: all that was found, with a finding in place of the figure."""
 
     def __init__(self, outcome: Outcome, why: str):
         super().__init__(why)
@@ -137,15 +134,11 @@ class Case:
         raise NotImplementedError(self.name)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        """Scenes that SAM may solve beforehand, in any order, where several processes share a case of hours:
-        `solve` then takes the results from the store.
-        """
+        """Scenes that SAM may solve beforehand, by several processes; `solve` takes them from the store."""
         return ()
 
     def measure(self, found: Any) -> Mapping[str, Measured | float]:
-        """Row id without the name of the case -> value; a number alone stands for one without an expected
-        value.
-        """
+        """Row id without the name of the case -> value; a number stands for one that expects nothing."""
         raise NotImplementedError(self.name)
 
     def setup(self, found: Any) -> Iterable[tuple[str, str]]:
@@ -177,9 +170,8 @@ class Case:
         return self.collect(context, self.solve(context))
 
     def collect(self, context: Context, found: Any) -> Outcome:
-        """What the parts say of what `solve` returned; the figures are saved.
-
-        Raises NotDrawnError, with all the rest, when a figure cannot be drawn.
+        """What the parts say of what `solve` returned; the figures are saved. Raises NotDrawnError, with all
+        the rest, when a figure cannot be drawn.
         """
         setup, tables, notes = (list(part(found)) for part in (self.setup, self.tables, self.notes))
         outcome = Outcome(self.values(found), setup, [], tables, notes, plain(self.data(found)))
@@ -208,12 +200,10 @@ class Case:
 
 @dataclass
 class Context:
-    """What a case may use: scenes, solvers, and where to put its files.
-
-    out: folder of the report; store: where results are looked up and kept, None to compute all. Filled here:
-    inputs, name -> content of each scene file and of the files it names; runs, folders written; sources: run
-    -> where its result is from; taken_s: what the solves of results from the store took; pdf: draw figures
-    as PDF alone.
+    """What a case may use: scenes, solvers, and where to put its files. out: folder of the report; store:
+    where results are looked up and kept, None to compute all. Filled here: inputs, name -> content of each
+    scene file and of the files it names; runs, folders written; sources: run -> where its result is from;
+    taken_s: what the solves of results from the store took; pdf: draw figures as PDF alone.
     """
 
     case: str
@@ -239,10 +229,7 @@ class Context:
         return scene
 
     def solve(self, model: str, scene: Scene, label: str, *, demand: bool = True) -> Result:
-        """Solve, or take from the store, and write the run into runs/<case>/<label>.
-
-        RuntimeError when it did not converge, unless not `demand`ed.
-        """
+        """Solve, or take from the store, and write runs/<case>/<label>. RuntimeError if unconverged."""
 
         def progress(stage: str, k: int, n: int) -> None:
             self.progress(f"{self.case}, {label}: {stage}", k, n)
@@ -264,9 +251,7 @@ class Context:
         return printable(without_places(f"{type(problem).__name__}: {problem} ({where})", self.out))
 
     def save(self, plot: Plot) -> Figure:
-        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF, and look whether it can be
-        read.
-        """
+        """Write a drawing as figures/<case>-<name>.png with its data, or as PDF; and whether it reads."""
         from verification.figures.check import findings  # noqa: PLC0415 - loads matplotlib
         from verification.figures.style import save  # noqa: PLC0415 - loads matplotlib
 

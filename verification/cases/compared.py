@@ -27,9 +27,7 @@ from verification.text.console import number
 
 
 def scene_of(context: Context, file: CaseFile, *changes: Mapping[str, Any]) -> Scene:
-    """The scene of a case at the level of the context, changed by a variant and a run of it: keys set, then
-    recipes applied in the order of RECIPES.
-    """
+    """The scene of a case at this level, changed by a variant and a run: keys, then RECIPES in order."""
     quick = file.quick if context.level == "quick" else {}
     said = reduce(merged, ({"set": file.set, "vary": file.vary}, quick, *changes))
     place = str(file.path.parent / file.scene) if file.scene.endswith(".toml") else file.scene
@@ -81,9 +79,7 @@ class Compared(Case):
             yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
     def measure(self, found: Mapping[str, Solved]) -> dict[str, Measured]:
-        """The rows of the file: `sam/exact` and the like by the vocabulary; what is said of both models, or
-        of all runs, by what is between them; and what they take of the sweeps.
-        """
+        """The rows of the file: by the vocabulary, by what is between both or all runs, and of the sweeps."""
         values: dict[str, Measured] = {}
         for claim in self.file.claims:
             solved, quantity = found[claim.variant], QUANTITIES.get(claim.quantity)
@@ -149,9 +145,7 @@ class Compared(Case):
             yield SmallTable("Refinement uncertainties", columns, rows)
 
     def data(self, found: Mapping[str, Solved]) -> dict[str, Any]:
-        """Under `pairs` each quantity of SAM beside that of FEM, of variants the largest values; and what the
-        file hands on of its frame.
-        """
+        """Under `pairs` SAM beside FEM, of variants the largest values; and what the file hands on."""
         pairs: list[tuple[str, float, float]] = []
         handed = beside(self.file, self.file.data, {})(found[""].frame) if self.file.data else {}
         for name, solved in found.items():
@@ -202,11 +196,9 @@ def keys_of(section: Section, above: str = "") -> str:
 
 def refinement(found: Solved, quantity: Quantity) -> tuple[float, float, float, float]:
     """Refinement uncertainties of SAM and FEM, their difference, and what is allowed: 1 %, or both
-    uncertainties where that is more.
-
-    Uncertainty: change from a coarser grid over (ratio - 1), the rest of a first-order error (Roache,
-    Verification and Validation in Computational Science and Engineering, 1998, Eq. 5.10.5.1 without its
-    factor of safety). Fields in the L2 norm, over that of FEM.
+    uncertainties where that is more. Uncertainty: change from a coarser grid over (ratio - 1), the rest of a
+    first-order error (Roache, Verification and Validation in Computational Science and Engineering, 1998, Eq.
+    5.10.5.1 without its factor of safety). Fields in the L2 norm, over that of FEM.
     """
     sam, fem = found.results.values()
     both = quantity.between(found.scene, sam, fem)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import UNLOADED
-from verification.cases.case import Plot, View
+from verification.cases.case import DataFrame, Plot, View
 from verification.cases.sweep import BOTH, LABELS, UNITS as SI, fitted, label_of, spelt, words_of
 from verification.compare.measures import SHALLOWEST, Plane, patch_pressure, spots
 from verification.figures.check import COUNTS
@@ -51,9 +51,6 @@ from verification.rows import CaseFile
 from verification.runs.sampling import peak, pressure_map, rows_of
 from verification.runs.tables import contact_size
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 COLUMNS = {
     ("line", "p_Pa"): ("Pressure", PRESSURE, "p0"),
     ("line", "uz_m"): ("Displacement of the body", r"$u_z/\delta$", "approach"),
@@ -77,9 +74,7 @@ def _maps(what: str, name: str, draw: Callable[[Solved], Drawing]) -> Callable[[
 def _along(
     *columns: tuple[str, str], name: str, title: str, until: float, pressed: float = np.inf
 ) -> Callable[[Solved], Plot]:
-    """Columns of tables on the curves that the reference has, to `until` times a, the pressure to `pressed`
-    or to where it is compared, with the errors underneath.
-    """
+    """Columns of tables on the curves of the reference to `until` times a, with the errors underneath."""
 
     def plot(found: Solved) -> Plot:
         units, curves = found.reference.units, found.reference.curves
@@ -475,7 +470,7 @@ VIEWS: Mapping[str, View] = {
         *("sam", "plastic-zone", "zone", "The plastic zone in space"),
         "The picture shows the plastic strain of SAM at the peak load on the cut y = 0 and, where the zone "
         "reaches it, on the surface.",
-    ),
+    )
 }
 """Name in a case file -> the picture in space."""
 OVER_VARIANTS: Mapping[str, Callable[[CaseFile, Mapping[str, Solved]], Iterator[Plot]]] = {

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a case may change of its scene beside single keys, `vary = {NAME = value}`: each a function of the
-scene and the value.
-"""
+"""What a case may change of its scene beside single keys, `vary = {NAME = value}`."""
 
 from __future__ import annotations
 
@@ -67,17 +65,13 @@ def resolved_at(scene: Scene, resolution: Resolution) -> Scene:
 
 
 def layer_faces(cells: int, deepest: float = DEEPEST) -> np.ndarray:
-    """Depths of the faces of the layers in a: even to 1, then each thicker than the last, halved where
-    `cells` doubles.
-    """
+    """Depths of the faces of layers in a: even to 1, then ever thicker, halved where `cells` doubles."""
     even = np.arange(round(deepest * cells) + 1) / cells
     return even + GROWTH * np.maximum(even - EVEN, 0.0) ** 2
 
 
 def even_cells(scene: Scene, reach: Sequence[float]) -> Scene:
-    """Cubes of a/size for a given pressure, a its radius. reach: size, then in a how far they go along x
-    beyond its path, along y, and down.
-    """
+    """Cubes of a/size for a given pressure. reach in a: size, along x beyond its path, along y, and down."""
     size, along, across, below = reach
     a, path = scene.loading.radius, scene.loading.path
     h, half = a / size, path.end[0] / a if path else 0.0
@@ -162,9 +156,7 @@ def sliding_scene(base: Scene, ratio: float, friction: float, resolution: Resolu
 
 
 def rubbed(scene: Scene, friction: Mapping[str, Any] | float | str) -> Scene:
-    """The scene with friction: its keys, its coefficient, 0 for none, or "map": high on the asperity in the
-    middle.
-    """
+    """The scene with friction: its keys, its coefficient, 0 for none, or "map": high on the middle one."""
     law = None
     if friction == "map":
         law = Friction(law="map", path=asperities.friction_map(asperities.CELLS))
@@ -194,9 +186,7 @@ BESIDE = (2.0, 1.8, 2.0)  # grid beyond the way of the centre along x, to its si
 
 
 def travelling(scene: Scene, keys: Mapping[str, float]) -> Scene:
-    """A given Hertz pressure of radius 10 um that travels along x in so many passes; over_shear: p0 over the
-    shear yield stress.
-    """
+    """A Hertz pressure of radius 10 um along x in so many passes; over_shear: p0 over the shear yield."""
     radius, (ahead, beside, below) = 1e-5, BESIDE
     h = radius / PASS_CELLS
     nx, ny = (2 * round(half * PASS_CELLS) + 1 for half in (WAY + ahead, beside))
@@ -215,9 +205,7 @@ TRACK_RATIO = 4.0  # p0 over the initial yield stress
 
 
 def radius_at(scene: Scene, ratio: float = TRACK_RATIO) -> float:
-    """Hertz radius in m of a rigid sphere, or half-width below a cylinder, at p0 = ratio times the initial
-    yield stress.
-    """
+    """Hertz radius in m of a rigid sphere, half-width below a cylinder, at p0 = ratio yield stresses."""
     modulus = scene.body.young / (1 - scene.body.poisson**2)
     if scene.counterbody.length:
         return contact_of(at_ratio(scene, ratio)).contact_radius
@@ -254,9 +242,7 @@ KINEMATIC = {"law": "perfect", "yield_stress": 1e9, "kinematic": {"modulus": (20
 
 
 def film_sliding(scene: Scene, share: float) -> Scene:
-    """A film of `share` of the contact radius without it under a contact that slides: 16 cells and 10
-    elements in that radius, depths at both sides of the interface.
-    """
+    """A film of `share` of the bare radius in sliding: 16 cells, 10 elements, depths at the interface."""
     a = contact_of(scene).contact_radius
     h, n = share * a, 2 * round(1.6 * 16) + 1
     even = 0.04 * a * np.arange(round(1.6 / 0.04) + 1)
@@ -266,9 +252,7 @@ def film_sliding(scene: Scene, share: float) -> Scene:
 
 
 def film_dragged(scene: Scene, share: float) -> Scene:
-    """The Hertz pressure of the contact without film in place of the counter-body, on a film of `share` of
-    its radius: 24 cells and 6 elements in that.
-    """
+    """The Hertz pressure without film on a film of `share` of its radius: 24 cells and 6 elements in that."""
     hertz = contact_of(scene)
     a, n = hertz.contact_radius, 2 * round(1.6 * 24) + 1
     depths = (0.0, 0.25, 0.5, 0.75, FILM_SIDE, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
@@ -281,9 +265,7 @@ def film_dragged(scene: Scene, share: float) -> Scene:
 
 
 def film_under(scene: Scene, film: tuple[str, float, float, float]) -> Scene:
-    """A film on a contact of 6.5 GPa. film: counter-body, contact radius without film in m, thickness in m,
-    E1/E2.
-    """
+    """A film under 6.5 GPa: counter-body, contact radius without film in m, thickness in m, E1/E2."""
     (counterbody, radius, thickness, ratio), p0 = film, 6.5e9
     body, other = scene.body, CounterBody(shape="sphere", radius=1.0, **COUNTERBODIES[counterbody])
     modulus = effective_modulus(body.young, body.poisson, other.young, other.poisson)
@@ -302,9 +284,7 @@ def on_counterbody(scene: Scene, _: bool) -> Scene:
 
 
 def cells_of_asperities(scene: Scene, cells: int) -> Scene:
-    """The three asperities, and a map of friction, on cells x cells cells; even layers of half a cell, with a
-    face where the hardening law changes.
-    """
+    """The asperities, and a map of friction, on cells x cells; even layers, a face where the law changes."""
     section = "surface" if scene.surface else "counterbody.surface"
     scene = with_keys(scene, section, path=asperities.height_map(cells))
     if scene.friction and scene.friction.law == "map":
@@ -362,9 +342,7 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
-    """What a name in a case file stands for: what the module beside the file defines, of a registry, or what
-    that module imports.
-    """
+    """What a name in a case file means: of the module beside it, a registry, or what that module imports."""
     own = None
     if file.path.with_suffix(".py").exists():
         module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")

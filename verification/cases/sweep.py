@@ -15,12 +15,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import Context, SmallTable
+from verification.cases.case import Context, DataFrame, SmallTable
 from verification.cases.recipes import beside, changed
 from verification.compare.comparison import compare_scene
 from verification.judging import Measured, error_of
@@ -30,9 +30,6 @@ from verification.references import REFERENCES, hertz_sphere
 from verification.rows import CaseFile, Claim, SweepFile, Take
 from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.text.console import number
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 MODELS = {"sam": SAM, "fem": FEM, "fem-3d": FEM_3D, FEM_LINE: FEM_LINE}
 BOTH = "sam/fem"
@@ -238,9 +235,7 @@ def label_of(file: CaseFile, name: str, value: Any = None) -> str:
 
 
 def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
-    """A table for each sweep: a line a run, and the observed orders in the last; none of a map, which is
-    drawn.
-    """
+    """A table for each sweep: a line a run, observed orders in the last; none of a map, which is drawn."""
     for name, rows in frame.groupby("sweep", sort=False):
         if len(rows) > MOST:
             continue

@@ -22,9 +22,8 @@ DEEPEST = 3.0  # Hertz radii: down to there is the force through planes judged; 
 
 class Formed:
     """A step of a finite-element model, everything formed anew from its displacements and plastic strains.
-
-    strain, stress: (n, ...), no engineering shear, in the units of the model; depths: of the Gauss points
-    in m.
+    strain, stress: (n, ...), no engineering shear, in the units of the model; depths: of the Gauss points in
+    m.
     """
 
     def __init__(self, scene: Scene, model: Any, step: Any, depths: np.ndarray):

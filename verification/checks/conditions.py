@@ -46,9 +46,7 @@ def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def load(scene: Scene, result: Result) -> float:
-    """Tension over the largest pressure, or what is given of the load: the sum of the pressure against
-    the force, of FEM over rings, and the approach.
-    """
+    """Tension over the largest pressure, or what is given: the sum of the pressure; the approach."""
     force = force_of(scene, result)
     if result.model == "sam":
         hx, hy = result.discretisation["cell_m"]
@@ -84,9 +82,7 @@ def simpson_rings(r: np.ndarray) -> np.ndarray:
 
 def complementarity(scene: Scene, result: Result) -> float:
     """p gap = 0, gap >= 0 on the line y = 0, the gap that of the shapes + uz - approach and that returned;
-    over the approach.
-
-    Of a rough body with the returned heights, on a grid with a row of cells on the line.
+    over the approach. Of a rough body with the returned heights, on a grid with a row of cells on the line.
     """
     line, approach = peak_rows(result, "line"), result.quantities["approach_m"]
     if scene.patch_surface is None:

@@ -138,9 +138,7 @@ def flow_of(
 
 
 def around(values: np.ndarray, box: Mapping, shape: Sequence[int]) -> np.ndarray:
-    """Values (..., nx, ny) of a box in a larger one, zero beside it; box: a window of a record; shape: of
-    the larger one, (nx, ny) or (nz, nx, ny).
-    """
+    """Values (..., nx, ny) of a box in a larger one, zero beside it; shape: (nx, ny) or (nz, nx, ny)."""
     out = np.zeros((*values.shape[: values.ndim - len(shape)], *shape), dtype=values.dtype)
     inside = out[..., box["i0"] : box["i0"] + box["nx"], box["j0"] : box["j0"] + box["ny"]]
     if len(shape) > 2:
@@ -150,9 +148,7 @@ def around(values: np.ndarray, box: Mapping, shape: Sequence[int]) -> np.ndarray
 
 
 def fields_at_points(material: Mapping) -> dict[str, np.ndarray]:
-    """The fields at the points of all cells of a box, (..., 4, nz, nx, ny), of a record, which holds those of
-    the cells that have yielded.
-    """
+    """The fields of a record at the points of all cells of a box, (..., 4, nz, nx, ny)."""
     cells, out = material["cells"], {}
     for name, values in material["points"].items():
         if values is not None:

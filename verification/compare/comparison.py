@@ -134,10 +134,7 @@ def compare_scene(scene: Scene, sam: Solution, fem: Solution) -> list[Verdict]:
 def compare_data(
     scene: Scene, sam: Solution, fem: Solution, data: OwnData
 ) -> tuple[list[Verdict], list[Verdict]]:
-    """Rows that both models have only beside data, and every row of SAM and the data that these have.
-
-    The column fem of the second holds the data. What they lack is not compared.
-    """
+    """Rows of both models beside data, and of SAM and the data, whose values the column fem then holds."""
     between: list[Verdict] = []
     found = compare_scene(scene, sam, data)
     for other, rows in ((fem, between), (data, found)):
@@ -225,9 +222,7 @@ def _reach(pair: Pair, limit: float, state: str = PEAK, *, side: int = 1) -> flo
 
 
 def _pressure(pair: Pair):
-    """p over the disc: weight 2 pi r dr; of a line contact, and against the three-dimensional model, along
-    y = 0.
-    """
+    """p over the disc: weight 2 pi r dr; of a line contact, and against `fem-3d`, along y = 0."""
     if "spatial" in pair.kinds:
         return _along(pair, "p_Pa", pair.radius * 1.2)
     known = "unknown-radius" not in pair.kinds  # else its edge is known to the distance of two places
@@ -359,10 +354,9 @@ class Tolerances:
 
 
 def tolerances_of(scene: Scene, given: Mapping[str, object], source: str) -> Tolerances:
-    """Those of the scene, and `given` in their place where both have one.
-
-    given: name -> a number, or a text such as "2 %". Raises SceneError with every name that no row of the
-    scene has, and every value that is no tolerance; source names the scene in it.
+    """Those of the scene, and `given` in their place where both have one. given: name -> a number, or a text
+    such as "2 %". Raises SceneError with every name that no row of the scene has, and every value that is no
+    tolerance; source names the scene in it.
     """
     known, faults = names_of_rows(scene), []
     of_scene = (scene.compare.tolerances if scene.compare else None) or {}

@@ -38,9 +38,7 @@ LEAST = 0.05  # of the force: a spot that bears less is not compared by itself
 
 @dataclass(frozen=True)
 class Plane:
-    """The plastic strain (nx, nz) in y = 0 at peak load; x (nx,), z (nz,), ascending, in one unit of length.
-    jump: depth at which the strain jumps, as the hardening law does.
-    """
+    """Plastic strain (nx, nz) in y = 0 at the peak; x, z ascending, in one unit; jump: depth of the law's."""
 
     x: np.ndarray
     z: np.ndarray
@@ -54,9 +52,7 @@ class Plane:
         return cls(x / unit, z / unit, peeq, jump)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """At x (m,) and z (n,), (m, n), by a bicubic spline on either side of the jump; never below zero, NaN
-        outside.
-        """
+        """At x (m,) and z (n,), (m, n), bicubic on either side of the jump; never below zero, NaN outside."""
         values = np.empty((x.size, z.size))
         for own, asked in ((self.z < self.jump, z < self.jump), (self.z >= self.jump, z >= self.jump)):
             if asked.any():
@@ -78,9 +74,7 @@ class Plane:
 
 
 def depths_compared(plane: Plane, x: float, radius: float = 1.0) -> np.ndarray:
-    """Depths from SHALLOWEST radii on with at least SHARE of the largest strain there at x, none between the
-    points beside the jump.
-    """
+    """Depths from SHALLOWEST radii on with SHARE of the largest strain there at x, not beside the jump."""
     z = np.arange(SHALLOWEST, plane.z[-1] / radius, SPACING) * radius
     above, under = plane.z[plane.z < plane.jump], plane.z[plane.z >= plane.jump]
     if above.size:
@@ -239,9 +233,7 @@ def patch_pressure(tables: Tables) -> tuple[np.ndarray, ...]:
 
 
 class Spot(NamedTuple):
-    """One contact spot. sam, fem: loads in N; x, y: centre of its pressure, radius: of the circle with the
-    area of its cells, of FEM in m.
-    """
+    """A contact spot. sam, fem: loads in N; x, y: centre of its pressure; radius: of its area of FEM, m."""
 
     sam: float
     fem: float
@@ -251,9 +243,7 @@ class Spot(NamedTuple):
 
 
 def spots(sam: Tables, fem: Tables) -> list[Spot]:
-    """The spots that bear more than LEAST of the force, by x: connected regions where either model
-    has contact. Raises ValueError when the two are not on the same cells.
-    """
+    """Spots that bear more than LEAST of the force, by x. Raises ValueError when cells are not the same."""
     (u, v, own), (x, y, p) = patch_pressure(sam), patch_pressure(fem)
     if own.shape != p.shape or not (np.allclose(u, x) and np.allclose(v, y)):
         raise ValueError(f"the patches differ: {own.shape} and {p.shape} cells")

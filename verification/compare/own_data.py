@@ -83,10 +83,7 @@ class OwnData:
 
 
 def read_data(path: str | Path, scene: Scene) -> OwnData:
-    """The data in a CSV file, in a folder of such files, or in the mesh that a mapping (TOML) names.
-
-    Raises SceneError with everything that is wrong with them, or that cannot be of this scene.
-    """
+    """The data in a CSV file, a folder of such, or a mapped mesh. Raises SceneError with every fault."""
     path = Path(path)
     if path.stem.lower() in COLUMNS_OF_ROWS:
         raise _refused(path, [Problem("", "", f"{path.stem} is a column of compare.csv: rename the data")])
@@ -223,9 +220,7 @@ def _refined(z: np.ndarray, rows: np.ndarray, values: np.ndarray, name: str) -> 
 
 
 def _expected(scene: Scene) -> tuple[float, dict[str, float]]:
-    """Contact radius in m, and column -> what its largest value is to within a factor of ten, NaN: unknown;
-    by Hertz, without coating; of a rough scene the half side of its patch alone.
-    """
+    """Contact radius in m, and column -> largest value to a factor of ten by Hertz, NaN: unknown."""
     radius, pressure, approach = float(max(hertz_semi_axes(scene))), math.nan, math.nan
     body, other, loading = scene.body, scene.counterbody, scene.loading
     if other is None:
@@ -292,13 +287,11 @@ class MeshAxes(Section):
 
 
 class MeshMapping(Section):
-    """The content of a mapping file.
-
-    file: of the mesh, in the folder of the mapping; length_unit, stress_unit: of the mesh; origin: the point
-    of first contact, in its unit; axes: its axes; step: of its load steps, from 1, else the last; state: the
-    one of the scene that this is; pressure, mises, peeq: names of arrays; displacement, stress: of arrays
-    with components, or lists of arrays with one; components: of the stress, in their order, else that
-    of VTK.
+    """The content of a mapping file. file: of the mesh, in the folder of the mapping; length_unit,
+    stress_unit: of the mesh; origin: the point of first contact, in its unit; axes: its axes; step: of its
+    load steps, from 1, else the last; state: the one of the scene that this is; pressure, mises, peeq: names
+    of arrays; displacement, stress: of arrays with components, or lists of arrays with one; components: of
+    the stress, in their order, else that of VTK.
     """
 
     of_scene: ClassVar[bool] = False
@@ -352,10 +345,7 @@ def _direction(axis: str) -> np.ndarray:
 
 
 def _read_mapped(path: Path, radius: float) -> Tables:
-    """The tables line, axis and plane of the mesh that a mapping file names, at its load step, undeformed.
-
-    radius: of the contact in m, about. Raises SceneError with everything that is wrong with mapping or mesh.
-    """
+    """The tables line, axis and plane of a mapped mesh, undeformed; radius in m. Raises SceneError."""
     try:
         table = parse_toml(read_limited(path), str(path))
         mapping = MeshMapping.model_validate(table, context={"spelling": "file"})
@@ -484,9 +474,7 @@ def _placed(mesh: UnstructuredGrid, mapping: MeshMapping, path: Path, radius: fl
 def _along(
     mesh: UnstructuredGrid, name: str, columns: Sequence[str], *, radius: float, inside: bool
 ) -> dict[str, np.ndarray]:
-    """The columns of a table, its places first: at nodes of the mesh, else between them; inside: below the
-    surface only.
-    """
+    """The columns of a table, places first: at nodes, else between them; inside: below the surface only."""
     on, reach = ON * radius, REACH * radius
     x, y, z = np.asarray(mesh.points).T
     least = on if inside else -on

@@ -42,10 +42,9 @@ COLUMNS = ("quantity", "sam", "fem", "metric", "difference", "tolerance", "passe
 
 @dataclass(frozen=True)
 class Pair:
-    """Two results of one scene.
-
-    radius: contact radius of FEM in m; kinds: the tables of `rows.toml` that they have, which also say how
-    they are compared; film: thickness of a coating in m, in which only its largest stress is compared.
+    """Two results of one scene. radius: contact radius of FEM in m; kinds: the tables of `rows.toml` that
+    they have, which also say how they are compared; film: thickness of a coating in m, in which only its
+    largest stress is compared.
     """
 
     sam: Solution

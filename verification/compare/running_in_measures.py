@@ -73,10 +73,9 @@ class History:
 
 @dataclass(frozen=True)
 class Scar:
-    """The surface of the last cycle: x (nx,), y (ny,) in m, the others (nx, ny).
-
-    height: before any wear, in m; worn: depth in m after the cycle; at its peak p in Pa and friction, the
-    local coefficient, NaN out of contact.
+    """The surface of the last cycle: x (nx,), y (ny,) in m, the others (nx, ny). height: before any wear, in
+    m; worn: depth in m after the cycle; at its peak p in Pa and friction, the local coefficient, NaN out of
+    contact.
     """
 
     x: np.ndarray

@@ -31,7 +31,6 @@ equal."""
 @dataclass(frozen=True)
 class FilmVerdict:
     """change_*: by the film, at equal force, of the model where it is larger; NaN where there is none.
-
     breaking_radius_m: contact radius, without the film, of the sphere for which a change reaches the limit; 0
     if none does, infinite if every one of more than the thickness does.
     """

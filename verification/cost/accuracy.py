@@ -102,9 +102,7 @@ def first_choice(scene: Scene, model: str) -> Choice:
 
 
 def expected(scene: Scene, model: str) -> Choice:
-    """What the table of advice has for the accuracy of a scene. Raises ModelError for a kind of scene or an
-    accuracy that was not measured.
-    """
+    """What the table has for the accuracy of a scene. Raises ModelError for what was not measured."""
     accuracy, kind = scene.solver.accuracy, kind_of(scene)
     if kind not in ADVISED:
         raise models.ModelError(
@@ -179,9 +177,7 @@ class BeyondError(models.ModelError):
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene as it asks for it: plain, with its uncertainty, or to an accuracy. Raises what
-    the solver raises, and ModelError as `first_choice` or where even the first grids need too much.
-    """
+    """The result of a scene as it asks for it. Raises what the solver does, and ModelError of the search."""
     if scene.solver.accuracy is None:
         return solve_uncertain(scene, model, solver)
     search = Search(scene, model, solver or (lambda each, _: models.solve(each, model)))
@@ -210,9 +206,7 @@ class Solution:
 
 @dataclass
 class Attempt:
-    """What some grids say of the finest of them: the quantity that is known worst, its relative uncertainty,
-    None where there is none, and why the next grid is not solved.
-    """
+    """What some grids say of the finest: the quantity known worst, its relative uncertainty, why it ends."""
 
     choice: Choice
     result: Result
@@ -386,9 +380,7 @@ class Search:
         return Choice(choice.cells * times, min(best, MOST_TIMES * count))
 
     def finer(self, attempt: Attempt, count: int, wanted: int) -> float:
-        """By how much the cells have to be smaller with a wanted number of load steps, by the order seen; 1
-        if not at all, infinite where they cannot help.
-        """
+        """By how much cells must be smaller with these load steps, by the order seen; infinite if no help."""
         found = 1.0
         for name in quantities_of(self.scene):
             entry, value = attempt.result.uncertainty[name], abs(attempt.result.quantities[name])
@@ -405,9 +397,7 @@ class Search:
     def member(
         self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None
     ) -> Member:
-        """The scene on some cells, with some load steps. room: of a grid that was enlarged; depths: if not
-        all, of a coarser companion.
-        """
+        """The scene on some cells. room: of an enlarged grid; depths: of a coarser companion, if not all."""
         scene = alone(chosen_scene(self.scene, self.model, choice))
         if self.model != models.SAM:
             count = scene.fem.cells_per_radius

@@ -134,9 +134,7 @@ def kind_of(scene: Scene) -> str | None:
 
 
 def _load_ratio(scene: Scene) -> float | None:
-    """p0 of the elastic contact over the initial yield stress, the smallest over depth; None without
-    plasticity or load.
-    """
+    """p0 of the elastic contact over the least yield stress; None without plasticity or load."""
     plastic = scene.body.plasticity
     if plastic is None or scene.loading.force == 0.0:
         return None
@@ -146,10 +144,8 @@ def _load_ratio(scene: Scene) -> float | None:
 
 def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | None = None) -> dict:
     """Advice for a scene as a mapping that JSON can hold: its kind, the rows for the `usable` models, words,
-    table.
-
-    usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds are
-    scaled with the load steps and cycles of the scene where it yields.
+    table. usable: names of the models that can solve the scene; rows: of the committed table if None. Seconds
+    are scaled with the load steps and cycles of the scene where it yields.
     """
     rows = table() if rows is None else rows
     kind = kind_of(scene)
@@ -160,9 +156,7 @@ def advice_of(scene: Scene, usable: Sequence[str], rows: Sequence[AdviceRow] | N
 
 
 def _scale(scene: Scene, row: AdviceRow) -> float:
-    """Load steps of the scene over those of the measurement, where each has to be solved; later cycles
-    settle.
-    """
+    """Load steps of the scene over those measured, where each is solved; later cycles settle."""
     if scene.body.plasticity is None or row.method == LOAD_STEPS:
         return 1.0
     return scene.loading.steps * scene.loading.cycles**SETTLES / row.load_steps
@@ -186,9 +180,7 @@ def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:
 
 
 def _table(rows: Sequence[AdviceRow], scene: Scene) -> dict[str, list]:
-    """columns and rows for the reader: one row for each error and method, the load steps of that error in
-    each.
-    """
+    """Columns and rows for the reader: a row for each error and method, with the load steps."""
     steps = {row.error: _resolution(row) for row in rows if row.method == LOAD_STEPS}
     methods = [row for row in rows if row.method != LOAD_STEPS]
     cells = []

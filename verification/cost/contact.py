@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The elastic contact that is expected of a scene: before a solve by the estimates from which its grid is
-chosen, and beside a result by the closed form of Hertz.
-"""
+"""The elastic contact that is expected of a scene: estimated before a solve, by Hertz beside a result."""
 
 from __future__ import annotations
 
@@ -20,9 +18,7 @@ YIELDS_AT_LINE = 1.79  # below a cylinder, by von Mises (nu = 0.3)
 
 
 def hertz_of(scene: Scene) -> dict[str, float]:
-    """Names of quantities -> their values by Hertz, where a smooth sphere, ellipsoid or cylinder touches a
-    body without coating; else nothing.
-    """
+    """Quantity -> its value by Hertz, below a smooth sphere, ellipsoid or cylinder without film; or none."""
     other, loading, body = scene.counterbody, scene.loading, scene.body
     if other is None or scene.patch_surface is not None or body.coating is not None or loading.force == 0.0:
         return {}
@@ -115,9 +111,7 @@ def _over(found: Mapping[str, Any], what: str, yields_at: float = YIELDS_AT) -> 
 
 
 def _of_plane(scene: Scene, beyond: Any) -> dict[str, Any]:
-    """A plane on a rough body: nominal pressure, share of an elastic contact, pressure of the spots, E*/2
-    times the rms slope.
-    """
+    """A plane on a rough body: nominal pressure, share in contact, E*/2 times the rms slope."""
     slope, modulus = rms_slope(scene), contact_modulus(scene)
     found: dict[str, Any] = {"rms_slope": slope}
     words = f"rough: rms slope {slope:.2g}" if slope else "rough: rms slope unknown"

@@ -195,9 +195,7 @@ def contact_share(scene: Scene, pressure: float) -> float:
 
 
 def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
-    """Cells in x and y of the box around the contact of a rough body: the grid if that changes place, else
-    around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
-    """
+    """Cells in x and y of the box around a rough contact: where the gap is smallest, WIDER_SPOTS wider."""
     from sam.contact import Counters, around
     from sam.plasticity import or_whole
 
@@ -275,9 +273,7 @@ def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
 
 
 def load_ratio(scene: Scene, depths: np.ndarray) -> tuple[float, float]:
-    """(p0 of the elastic contact over the least yield stress at these depths, yield stress at 1 % over that
-    at 0).
-    """
+    """(p0 of the elastic contact over the least yield stress here, yield stress at 1 % over that at 0)."""
     strength = scene.body.plasticity.strength()
     over_depth = strength.stress(depths, np.zeros(1))
     weakest = strength.curve_at(depths[over_depth.argmin()])
@@ -360,9 +356,7 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
-    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that; zeros
-    below it.
-    """
+    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that."""
     from verification.reference.hertz import subsurface_stress
     from verification.reference.stress import von_mises
 
@@ -375,9 +369,7 @@ def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
 
 
 def _farthest(at: np.ndarray, excess: np.ndarray) -> float:
-    """The largest place along the first axis where any of (n, m) values crosses zero downwards, between the
-    points; or 0.
-    """
+    """The farthest place along the first axis where (n, m) values cross zero downwards, or 0."""
     before, after = excess[:-1], excess[1:]
     i, j = np.nonzero((before > 0) & (after <= 0))
     return float(np.max(at[i] + (at[1] - at[0]) * before[i, j] / (before[i, j] - after[i, j]), initial=0.0))
@@ -438,9 +430,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         "chunks": 1.0,
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
-    work |= {
-        "box set-up": sum(box.set_up for each in either for box in each) / 2,
-    }
+    work |= {"box set-up": sum(box.set_up for each in either for box in each) / 2}
     if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
         if last.swept and last.large:  # by an operator of its own
             plane = replace(last, nx=grid.nx, layers=depths)
@@ -485,9 +475,7 @@ def _spatial(scene: Scene, plan: Any) -> Counted:
 
 
 def _line(scene: Scene, plan: Any) -> Counted:
-    """Of the plane-strain model: linear solves with one factorisation, one for each node that comes into
-    contact, and those of Newton's method.
-    """
+    """Of the plane-strain model: linear solves, one for each node in contact, and those of Newton."""
     steps = steps_of(scene)
     solves = (2.0 if plan.half else 4.0) * plan.cells_per_radius + 2.0 * steps
     if flows(scene):
@@ -496,15 +484,12 @@ def _line(scene: Scene, plan: Any) -> Counted:
     if flows(scene) and not scene.moves:
         states = 8.0 * steps * scene.loading.cycles * (plan.unknowns + 7 * plan.points)
     return Counted(
-        {"unknowns": 8.0 * plan.unknowns, "states": states},
-        {"solve": 1.0, "solves": solves * plan.unknowns},
+        {"unknowns": 8.0 * plan.unknowns, "states": states}, {"solve": 1.0, "solves": solves * plan.unknowns}
     )
 
 
 def _held_states(scene: Scene, plan: Any) -> float:
-    """Bytes of the states that stay in memory while a counter-body moves over a body that yields: at the end
-    of each pass, and where passes are judged all of the last period. Memory measured: 0.9 to 1.1 times that.
-    """
+    """Bytes of the states held while a counter-body moves: ends of passes, and all of a judged period."""
     if not (scene.moves and flows(scene)):
         return 0.0
     plasticity, judging = scene.body.plasticity, plan.judging

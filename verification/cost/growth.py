@@ -78,9 +78,7 @@ def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[dic
 
 
 def applied(nx: int, ny: int, layers: int, error: float = 0.0) -> dict[str, Any]:
-    """The residual-stress operator of a box of cells, in single precision, in a process of its own: seconds
-    of one application and of the set-up, bytes of its coefficients and of all; error: of sweeps, else dense.
-    """
+    """The residual-stress operator of a box, alone: seconds to apply and set up, bytes; error: of sweeps."""
     setup, apply_s, stored, peak = alone(_applied, nx, ny, layers, error)
     size = {"cells": nx * ny * layers, "plane": nx * ny, "depth": layers}
     cost = {"cpu-s": apply_s, "set-up-s": setup, "stored": stored, "memory": peak - idle_bytes(models.SAM)}
@@ -94,7 +92,7 @@ def _applied(nx: int, ny: int, layers: int, error: float) -> tuple[float, float,
 
     began = time.process_time()
     box = Cuboids(Lags(nx, ny, CELL, CELL), tuple(CELL * np.arange(layers + 1.0)), POISSON)
-    operator = BoxOperator(box, SHEAR, Counters(), single=True, swept=error)
+    operator = BoxOperator(box, SHEAR, Counters(), tolerance=1e-3, swept=error)
     setup = time.process_time() - began
     strain = np.random.default_rng(0).standard_normal((6, layers, nx, ny))
 
@@ -212,9 +210,7 @@ def fitted(
     matters: float,
     known: Mapping[str, float],
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts with the least squares of the relative errors of what was measured, those of
-    what is smaller than `matters` in proportion; known: factors that are not looked for.
-    """
+    """Factors >= 0 of the counts by least squares of relative errors from `matters` on; known: given ones."""
     from scipy.optimize import nnls
 
     names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a solve costs: each in a process of its own, so that memory is its own, and in the unit of a fixed
-kernel.
-"""
+"""What a solve costs: each in a process of its own, and in the unit of a fixed kernel."""
 
 from __future__ import annotations
 
@@ -37,9 +35,7 @@ def solve_alone(scene: Scene, model: str, threads: int = 1) -> Result:
 
 
 def idle_bytes(model: str) -> int:
-    """Peak memory of a process that has loaded `model` and the libraries of its solves, and solved
-    nothing.
-    """
+    """Peak memory of a process that has loaded `model` and the libraries, and solved nothing."""
     return alone(_loaded, model)
 
 
@@ -70,9 +66,7 @@ def _loaded(model: str) -> int:
 
 
 def calibration_s() -> float:
-    """Processor seconds of a fixed kernel: transforms and products of matrices, as solves are made of. Median
-    of three.
-    """
+    """Processor seconds of a fixed kernel of transforms and products of matrices, median of three."""
     field = np.random.default_rng(0).standard_normal((KERNEL_SIDE, KERNEL_SIDE))
 
     def once() -> float:

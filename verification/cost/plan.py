@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a scene will compute, what is left out and why, and an estimate of memory and time. Solves nothing.
-
-The stages are those of the plans of the models, the estimates those of `verification.cost.estimates`.
-"""
+"""What a scene will compute, what is left out and why, with estimates. Solves nothing."""
 
 from __future__ import annotations
 
@@ -70,7 +67,6 @@ SELDOM = ("counter-surface heights", "back-stresses", "chemical film")  # told o
 @dataclass(frozen=True, repr=False)
 class Plan:
     """What the models will compute of a scene; `print` shows it in a line for each topic and each warning.
-
     content: all of it as a mapping that JSON can hold: stages, estimate and resolution of every model, or why
     it cannot be used; contact; advice; by how much small strains of a flat half-space are off. model: the one
     that the attributes are about.
@@ -109,9 +105,7 @@ class Plan:
 
     @property
     def error(self) -> float | None:
-        """The largest relative error that was measured with so many cells and load steps, by the advice; None
-        where none was.
-        """
+        """The largest error measured with so many cells and load steps; None where none was."""
         found = self._entry["resolution"]
         return None if found["error"] is None else max(found["error"], found["steps_error"] or 0.0)
 
@@ -150,9 +144,7 @@ class Plan:
 
 
 def plan(scene: Scene, model: str | None = None) -> Plan:
-    """The plan of every model for its kind of contact; model: the one that the attributes are about, by
-    default the first that can represent the scene.
-    """
+    """The plan of every model for its contact; model: of the attributes, by default the first usable."""
     entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]
     advice, of_model = advice_of(scene, usable), model_range(scene)
@@ -239,9 +231,7 @@ def _brief(stages: Sequence[Mapping[str, Any]], *, runs: bool) -> str:
 
 
 def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
-    """That the contact is outside of the model, and by how much that is off, short; hertz: a/R of the elastic
-    contact.
-    """
+    """That the contact is outside of the model, and by how much that is off; hertz: elastic a/R."""
     if found is None:
         return []
     outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
@@ -296,9 +286,7 @@ def _model(scene: Scene, model: str) -> dict:
 
 
 def _stages(scene: Scene, made: Any) -> list[Stage]:
-    """Stages as the plan `made` of a model has them, in the order in which they begin, that of the
-    eigenstrain kernels with the box that plastic strain may fill in SAM; then those that it leaves out.
-    """
+    """Stages of the plan `made` in their order, with the plastic box of SAM; then those it leaves out."""
     found = []
     for stage in (each for each in made.stages if each.runs or each.reason == NO_FORCE):
         if stage.stage == "eigenstrain kernels" and stage.runs:
@@ -311,9 +299,7 @@ def _stages(scene: Scene, made: Any) -> list[Stage]:
 
 
 def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[Stage, float]:
-    """What the uncertainty of a scene is taken from besides the scene itself, or why it is expected to have
-    none, and the seconds it adds; cells: in the estimated contact radius.
-    """
+    """What the uncertainty is taken from, or why there is none, and its seconds; cells: in the radius."""
     try:
         found = family(scene, model)
     except NoFamilyError as error:
@@ -326,9 +312,7 @@ def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[
 
 
 def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> Any:
-    """The plan of a scene. Raises ModelError if `model` cannot represent it, or would need more memory than
-    there is, `available` bytes, by default this machine's; or, unless `anyway`, more time than LONGEST.
-    """
+    """The plan of a scene. ModelError for what `model` cannot do, too much memory, or time but `anyway`."""
     models.check(scene, model)
     available = memory_bytes() if available is None else available
     made = models.plan(scene, model)

@@ -22,10 +22,7 @@ TARGETS = (0.05, 0.01, 0.003)
 
 @dataclass(frozen=True)
 class Reached:
-    """Where a curve reaches an error. value: cost, or whatever was interpolated, None if it never does.
-
-    coarsest: even the first point is as good, so that the value is an upper bound; smallest: of the errors.
-    """
+    """Where a curve reaches an error. value: cost, or None; coarsest: an upper bound; smallest: error."""
 
     value: float | None
     coarsest: bool
@@ -33,9 +30,7 @@ class Reached:
 
 
 def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
-    """Numbers of the two points between which the error falls to `target` for good, (0, 0) when the first is
-    as good; None where the last point is above it, or an error behind it is not finite.
-    """
+    """The points between which the error falls to `target` for good, (0, 0): the first; None: never."""
     above = ~(np.asarray(errors, dtype=float) <= target)  # nan is above
     if not above.size or above[-1]:
         return None
@@ -44,9 +39,7 @@ def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
 
 
 def at_error(values: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0) -> Reached:
-    """The value (cost, cells) at which the error is `target`, log-log between the points of the bracket.
-    values, errors: (n,), coarse to fine, values positive; floor: errors count as no smaller.
-    """
+    """The value at which the error is `target`, log-log in the bracket; coarse to fine; floor: of errors."""
     values, errors = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     if values.shape != errors.shape or values.ndim != 1 or not np.all(values > 0.0):
         raise ValueError(f"values and errors: of one length, values positive, not {values} and {errors}")
@@ -88,9 +81,7 @@ class Ladder:
 
 
 def limit_of(ladder: Ladder) -> Reference:
-    """Richardson's limit of a ladder with the last correction as uncertainty, or the finest value with the
-    change from the one before where no power of h is followed.
-    """
+    """Richardson's limit with the last correction as uncertainty, else the finest and its change."""
     fitted = extrapolate(ladder.h, ladder.values)
     if fitted.observed:
         return Reference(fitted.limit, max(fitted.uncertainty, fitted.scatter), ladder.name)

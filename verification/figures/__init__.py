@@ -1,14 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Figures of runs, of comparisons and of the verification report, with the numbers behind them.
-
-A function here takes results, or curves and fields in the units of its axes, and returns a `Drawing`: a
-matplotlib figure and the columns of its CSV file. `style` holds the one look of all figures and writes them
-as PNG and CSV, or as PDF; `check` says what cannot be read in one; `lines` draws lines over x by series and
-panel, `profiles` curves above their errors, `maps` two fields and their difference, `specials` what is of its
-own kind; `run` and `compared` draw finished run folders. Nothing here solves or judges.
-
-Used by the command line, for runs and comparisons, and by the cases of the suite. matplotlib is imported by
-the modules here only, which whoever draws loads on use.
+"""Figures of runs, comparisons and reports: functions that take results, or curves and fields in the units of
+the axes, and return a `Drawing`, a figure of matplotlib and the columns of its CSV file. matplotlib is
+imported by the modules here only, which whoever draws loads on use.
 """
 
 from __future__ import annotations

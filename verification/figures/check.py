@@ -139,10 +139,7 @@ def _is_name(word: str) -> bool:
 
 
 def _of_lines(figure: Figure, panels: list[Axes]) -> Iterator[str]:
-    """Looks of lines that no legend has; a panel with one look is named by its axis.
-
-    A legend may also name colours by themselves and, in black, what a marker or a dash stands for.
-    """
+    """Looks of lines that no legend has, of panels with several; a legend may also name colours and marks."""
     legends = _legends(figure, panels)
     known = {part for legend in legends for each in legend.legend_handles for part in _look(each)}
     colors = {color for color, *_ in known}

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of a comparison: the curves of both models, and of data of the user, in the same axes, at
-peak load.
-"""
+"""Figures of a comparison: the curves of both models, and of data of the user, at peak load."""
 
 from __future__ import annotations
 
@@ -14,18 +12,7 @@ import numpy as np
 from verification.compare.rows import Solution
 from verification.figures import lines
 from verification.figures.lines import Curve
-from verification.figures.style import (
-    BLACK,
-    FEM,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SAM,
-    Columns,
-    Drawing,
-    marked,
-    save,
-)
+from verification.figures.style import BLACK, FEM, GREEN, ORANGE, PURPLE, SAM, Columns, Drawing, marked, save
 from verification.runs.files import FIGURES
 from verification.runs.sampling import peak
 from verification.runs.tables import contact_size
@@ -50,10 +37,7 @@ PANELS = {
 
 
 def compare_figures(folder: Path, solutions: Mapping[str, Solution], prefix: str = "") -> list[Path]:
-    """Write the figures of results of one scene into `folder`/figures; returns the paths (PNG, CSV of each).
-
-    solutions: "SAM", "FEM" and names of data -> each; prefix: of the names of the files.
-    """
+    """Write the figures of one scene into `folder`/figures; the paths. prefix: of the names of the files."""
     place = folder / FIGURES
     place.mkdir(parents=True, exist_ok=True)
     drawings = drawings_of(solutions)
@@ -67,10 +51,7 @@ def drawings_of(solutions: Mapping[str, Solution]) -> dict[str, Drawing]:
 
 
 def curves(runs: Mapping[str, Solution], table: str) -> Drawing:
-    """A panel for each quantity of a table over its place in um; with the data in SI units.
-
-    What data lack is not drawn, and everything only as far as SAM's, or the first with a contact radius.
-    """
+    """A panel for each quantity of a table over its place in um as far as SAM's contact; data in SI units."""
     place = {"line": "x_m", "axis": "z_m"}[table]
     radius = next((size for run in runs.values() if (size := contact_size(run.quantities))), 0.0)
     data, panels = Columns("panel", "model", place, "value"), dict[str, dict[str, Curve]]()

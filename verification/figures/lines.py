@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lines over x by series and panel, with points, fits and bounds where they are asked for: one
-function, `curves`, and the figures that it draws.
-"""
+"""Lines over x by series and panel, with points, fits and bounds: `curves`, and figures of it."""
 
 from __future__ import annotations
 
@@ -74,10 +72,9 @@ UNKNOWN = {"color": "#bbbbbb", "alpha": 0.45, "linewidth": 0.0}
 
 @dataclass(frozen=True)
 class Curve:
-    """x and y of a line (n,), any units.
-
-    fit: function of x through these points, drawn between the ends of `span` (None: of x); note: what the
-    legend says behind the name; ends: least and largest y, of bars; look: of this line alone.
+    """x and y of a line (n,), any units. fit: function of x through these points, drawn between the ends of
+    `span` (None: of x); note: what the legend says behind the name; ends: least and largest y, of bars; look:
+    of this line alone.
     """
 
     x: np.ndarray
@@ -91,14 +88,12 @@ class Curve:
 
 @dataclass(frozen=True)
 class How:
-    """How panels are drawn.
-
-    looks: of the series that have one of their own; size: of a panel, in inches; logarithmic: axes, "x", "y"
-    or "xy"; count: x are whole numbers, and y begins at zero, so that a small change looks small; ticks:
-    words of the x of the points, which alone have a number; shade: range of x that is not compared, floor: y
-    below which nothing is claimed, each of all panels or of each; band: of tolerance on both sides of zero;
-    marks: words -> ("x" or "y", places of guide lines); legend: "below" all panels or in "each", its entries,
-    below all, or none.
+    """How panels are drawn. looks: of the series that have one of their own; size: of a panel, in inches;
+    logarithmic: axes, "x", "y" or "xy"; count: x are whole numbers, and y begins at zero, so that a small
+    change looks small; ticks: words of the x of the points, which alone have a number; shade: range of x that
+    is not compared, floor: y below which nothing is claimed, each of all panels or of each; band: of
+    tolerance on both sides of zero; marks: words -> ("x" or "y", places of guide lines); legend: "below" all
+    panels or in "each", its entries, below all, or none.
     """
 
     looks: Mapping[str, Mapping] = field(default_factory=lambda: LOOKS)
@@ -254,9 +249,7 @@ def of_programs(
     target: float | None = None,
     floor: float = 0.0,
 ) -> Drawing:
-    """Label of the curve -> (program, x, y), in the order of the resolution; target: a value of y
-    that times are stated at; floor: shaded, no claims below.
-    """
+    """Label -> (program, x, y), coarse to fine; target: of stated times; floor: shaded, no claims below."""
     seen, looks = dict.fromkeys(PROGRAMS, 0), {}
     for label, (program, _, _) in series.items():
         looks[label] = PROGRAMS[program] | {"linestyle": DASHES[seen[program] % 3], "fillstyle": "none"}
@@ -268,9 +261,7 @@ def of_programs(
 
 
 def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, fitted
-    order or None).
-    """
+    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, order or None)."""
     drawn = {
         title: {
             name: Curve(h, error, order, f"order {order.exponent:.2f}")
@@ -289,9 +280,7 @@ def refinement(
     xlabels: Mapping[str, str],
     ylabel: str,
 ) -> Drawing:
-    """Strains in % over h, down to their limits at h = 0 where an order is observed; panels: title -> "SAM"
-    or "FEM" -> (h, strain, limit).
-    """
+    """Strains in % over h down to their limits; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
     drawn: dict[str, dict[str, Curve]] = {}
     for title, own in panels.items():
         panel = drawn[title.capitalize()] = {}
@@ -317,9 +306,7 @@ def profile_of(plane: Plane, x: float, deep: float) -> Curve:
 
 
 def below_spots(spots: Mapping[str, tuple]) -> Drawing:
-    """Plastic strain over depth. spots: title of a panel -> (z in m, strain) of SAM and of FEM, and
-    the depth from which they are compared; above it is grey.
-    """
+    """Plastic strain over depth: title -> (z in m, strain) of SAM, of FEM, and depth of comparison."""
     panels, shade = {}, {}
     for title, (*models, compared) in spots.items():
         named = zip(("SAM", "FEM"), models, strict=True)
@@ -335,9 +322,7 @@ LINE_ON_POINTS = {
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
-    """Yield stress in GPa over depth to `deep` (m), without plastic strain and with 1 %; cases:
-    name -> function of depths in m and a plastic strain, in Pa.
-    """
+    """Yield stress in GPa to `deep` (m), without strain and with 1 %; name -> function of m, strain."""
     z = np.linspace(0.0, deep, 401)
     titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
     drawn = {
@@ -353,10 +338,9 @@ def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]
 
 
 def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
-    """A line for each surface through the means, with bars from the smallest to the largest.
-
-    volumes: name of a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against
-    the cells; default: the cells in the shortest wave that are recommended, marked by a line.
+    """A line for each surface through the means, with bars from the smallest to the largest. volumes: name of
+    a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against the cells;
+    default: the cells in the shortest wave that are recommended, marked by a line.
     """
     drawn = {}
     for name, of_cells in volumes.items():
@@ -370,9 +354,7 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
 
 
 def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> Drawing:
-    """The uncertainty of numbers over their true error. panels: rule -> (scene, quantity, relative
-    error, relative uncertainty) of each value; what lies below the line is not covered.
-    """
+    """Uncertainty over true error: rule -> (scene, quantity, relative error, relative uncertainty) each."""
     data, drawn = Columns("rule", "scene", "quantity", "error_percent", "uncertainty_percent"), {}
     for title, points in panels.items():
         scenes, quantities, errors, bounds = map(np.array, zip(*points, strict=True))

@@ -45,10 +45,8 @@ BAR, CROSS, INTERFACE = (
 
 @dataclass(frozen=True)
 class FieldPair:
-    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field
-    is not known.
-
-    names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
+    """Two normalised fields on one grid: u (m,), v (n,), first and second (m, n); NaN where a field is not
+    known. names: of the two; axes: labels of u and v; quantity: label of the field, e.g. "$p/p_0$";
     semi_axes: of the contact in the units of u (and v), for the outline.
     """
 
@@ -127,10 +125,7 @@ def plane_maps(
     strip: float = 0.0,
     interface: float | None = None,
 ) -> Drawing:
-    """A field over (x, z), z down: first | second | difference, with iso-lines, contact width and the maxima.
-
-    strip: depth down to which nothing is compared, hatched; interface: depth at which a film ends, a line.
-    """
+    """A field over (x, z), z down: first | second | difference. strip: not compared; interface: of a film."""
     with style():
         figure, axes, bar = three_panels(pair, strip=strip)
         mark_levels(bar, levels)
@@ -178,10 +173,7 @@ def remark(panel: Axes, words: str) -> None:
 
 
 def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0):
-    """Three panels of one size: two with shared colour limits, the difference with symmetric ones.
-
-    touching: what is zero in a field, or in both, is not in contact and grey; strip: see `plane_maps`.
-    """
+    """Three panels: two on one scale, the difference. touching: zero is no contact; strip: `plane_maps`."""
     size = PANEL * np.ptp(pair.v) / np.ptp(pair.u) + AROUND
     figure = new_figure(9.4, size, "compressed")
     axes = figure.subplots(1, 3, sharex=True, sharey=True)
@@ -202,9 +194,7 @@ def three_panels(pair: FieldPair, *, touching: bool = False, strip: float = 0.0)
 
 
 def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bool, strip: float) -> None:
-    """The difference on a symmetric scale that a few points of the edge may exceed; the largest is
-    written above it.
-    """
+    """The difference on a symmetric scale that few points exceed; the largest is written above it."""
     shown = pair.difference
     if touching:
         shown = np.where((pair.first > 0.0) | (pair.second > 0.0), shown, np.nan)
@@ -221,9 +211,7 @@ def _draw_difference(panel: Axes, pair: FieldPair, bar: Mapping, *, touching: bo
 
 
 def draw_field(panel: Axes, u: np.ndarray, v: np.ndarray, field: np.ndarray, **options):
-    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised, so that a
-    PDF stays small.
-    """
+    """Colours of a field (m, n) over u (m,) and v (n,), grey where it is NaN; rasterised for small PDFs."""
     panel.set_facecolor(GREY)
     mesh = panel.pcolormesh(
         u, v, np.ma.masked_invalid(field.T), shading="nearest", rasterized=True, **options
@@ -282,9 +270,7 @@ CLEAR = 0.25
 def compared_pressure(
     sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
 ) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius of the contact in a;
-    power: see pressure_on.
-    """
+    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius in a; power: see pressure_on."""
     x, y, p = pressure_map(sam)
     use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
     x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
@@ -306,11 +292,9 @@ def rough_pressures(
 def compared_mises(
     sam: Result, fem: Result, a: float, p0: float, *, film: float | None = None, element: float = 0.0
 ) -> Drawing:
-    """Von Mises stress over p0 in y = 0: SAM | FEM | difference.
-
-    film: its thickness, element: size of the elements there, both in m. Between the last Gauss
-    points above and below the interface, within CLEAR of an element, no stress of FEM is known on
-    either side: nothing is drawn there.
+    """Von Mises stress over p0 in y = 0: SAM | FEM | difference. film: its thickness, element: size of the
+    elements there, both in m. Between the last Gauss points above and below the interface, within CLEAR of an
+    element, no stress of FEM is known on either side: nothing is drawn there.
     """
     clear = None if film is None else (film, CLEAR * element)
     pair, peaks = _both(sam, fem, "mises", (a, p0), clear=clear)
@@ -318,9 +302,7 @@ def compared_mises(
 
 
 def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
-    """Plastic strain in % in y = 0: SAM | FEM | difference, with the iso-line of 0.2 %; a: the
-    elastic contact radius in m; the bar over the maps is the contact of FEM.
-    """
+    """Plastic strain in % in y = 0: SAM | FEM | difference; a: elastic radius in m; bar: contact of FEM."""
     pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
     pair = replace(pair, semi_axes=(edge := contact_size(fem.quantities) / a, edge))
     return plane_maps(pair, peaks, iso_levels(max(peak.value for peak in peaks)))
@@ -355,10 +337,7 @@ def _both(
 
 
 def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thickness: float) -> Drawing:
-    """Von Mises stress of the body over p0 in y = 0, from the film's lower face on: SAM | FEM | difference.
-
-    units: a in m and p0 in Pa.
-    """
+    """Von Mises stress over p0 in y = 0, below the film: SAM | FEM | difference. units: a in m, p0 in Pa."""
     a, p0 = units
     x, z, own = plane_field(sam.tables, "mises_Pa")
     use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)
@@ -370,9 +349,7 @@ def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thick
 
 
 def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.ndarray:
-    """(nx, nz) the von Mises stress of the three-dimensional model in y = 0 below the film, linear;
-    NaN above its first depth there.
-    """
+    """(nx, nz) von Mises stress of `fem-3d` in y = 0 below the film, linear; NaN above its first depth."""
     u, w, values = plane_field(fem.tables, "mises_Pa")
     w[np.isclose(w, thickness, rtol=1e-9, atol=0.0)] = thickness  # to rounding
     body = w >= thickness
@@ -384,7 +361,6 @@ def compared_planes(
     first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0
 ) -> Drawing:
     """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them that of 0.2 %.
-
     edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
     nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
     """

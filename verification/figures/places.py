@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the contact of a finished run is, and the plane y = const through its largest pressure:
-what its figures show.
-"""
+"""Where the contact of a finished run is, and the plane through its largest pressure."""
 
 from __future__ import annotations
 
@@ -33,11 +31,7 @@ IN_FILM, BELOW = 9, 77
 
 @dataclass(frozen=True)
 class SurfaceMap:
-    """Fields over the cells (or nodes) of the surface at the peak. x (nx,), y (ny,) in m; fields:
-    name -> (nx, ny).
-
-    border: cells at each end in x and y that do not count for the largest values.
-    """
+    """Fields at the peak, x (nx,), y (ny,) in m, name -> (nx, ny). border: cells that do not count."""
 
     x: np.ndarray
     y: np.ndarray
@@ -123,11 +117,9 @@ def in_film(z: np.ndarray, film: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Section:
-    """The plane in which a run is drawn, y = const in m.
-
-    place: x of the largest pressure (of a "body": plastic strain) in it, in m; spots: where it is in
-    contact, (first, last) x in m of each; source: the table with its fields, "plane" (y = 0) or "cut", or
-    "body", the mesh.
+    """The plane in which a run is drawn, y = const in m. place: x of the largest pressure (of a "body":
+    plastic strain) in it, in m; spots: where it is in contact, (first, last) x in m of each; source: the
+    table with its fields, "plane" (y = 0) or "cut", or "body", the mesh.
     """
 
     y: float
@@ -189,10 +181,8 @@ def edges_of(x: np.ndarray) -> np.ndarray:
 
 
 def plane_of(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A column in the plane of a section at the peak: x (nx,), z (nz,) in m and the field (nx, nz).
-
-    Of the axisymmetric model between its Gauss points, in a film and below it by themselves; others
-    as they are.
+    """A column in the plane of a section at the peak: x (nx,), z (nz,) in m and the field (nx, nz). Of the
+    axisymmetric model between its Gauss points, in a film and below it by themselves; others as they are.
     """
     if run.model == "fem-axisymmetric":
         return _axisymmetric_plane(run, column)
@@ -230,11 +220,7 @@ def _rows(tables: Tables, use: np.ndarray) -> Tables:
 
 
 def below(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.ndarray]:
-    """Depths (nz,) in m and a column of axis.csv under the largest pressure; NaN, a gap, where a
-    coating ends.
-
-    In a cut it is the column of points next to the place.
-    """
+    """Depths (nz,) in m and a column below the largest pressure; NaN, a gap, where a coating ends."""
     if section.source == "plane":
         z, values = peak(run.tables["axis"], "z_m", column)
     else:

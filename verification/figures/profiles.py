@@ -12,17 +12,7 @@ from matplotlib.axes import Axes
 from sam.scene import Result
 from verification.figures.lines import GIGA, MICRO, PERCENT, POINTS
 from verification.figures.maps import INTERFACE, mark_interface
-from verification.figures.style import (
-    EXACT,
-    FEM,
-    SAM,
-    Columns,
-    Drawing,
-    new_figure,
-    sheet,
-    style,
-    zero_line,
-)
+from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style, zero_line
 from verification.reference.hertz import CircularContact
 from verification.runs.sampling import rows_of
 
@@ -30,10 +20,8 @@ from verification.runs.sampling import rows_of
 @dataclass(frozen=True)
 class Profile:
     """One panel above its errors: an exact curve, the computed series, and what their difference is divided
-    by.
-
-    exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) / scale;
-    xlim: what is shown (and written).
+    by. exact: x -> y (vectorised); series: "SAM" or "FEM" -> (x, y); scale: the error is 100 (y - exact) /
+    scale; xlim: what is shown (and written).
     """
 
     title: str
@@ -52,9 +40,7 @@ CLOSED_FORM = "closed form"
 def profiles(
     panels: Sequence[Profile], reference: str = CLOSED_FORM, *, interface: float | None = None
 ) -> Drawing:
-    """Each panel above its error in %, more than three in two columns; interface: x at which a film
-    ends, a line.
-    """
+    """Each panel above its error in %, more than three in two columns; interface: end of a film."""
     rows, across = profile_rows(reference), len(panels) if len(panels) <= 3 else 2
     bands = -(-len(panels) // across)
     size = max(3.3 * across, 5.0), 4.2 * bands
@@ -104,9 +90,7 @@ def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: 
 
 
 def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
-    """Under the centre: plastic strain and von Mises stress at the peak, von Mises and lateral
-    stress when unloaded.
-    """
+    """Under the centre: plastic strain and von Mises at the peak, von Mises and lateral stress after."""
     wanted = (
         ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
         ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),
@@ -125,10 +109,7 @@ def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Draw
 def _against_fem(
     labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
 ) -> Profile:
-    """SAM over the curve of FEM, within what both cover; errors in % of the largest value of FEM.
-
-    labels: title, of x and of y.
-    """
+    """SAM over the curve of FEM, errors in % of the largest value of FEM. labels: title, of x and of y."""
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
     scale = np.max(np.abs(y[(x >= limits[0]) & (x <= limits[1])]))
@@ -136,9 +117,7 @@ def _against_fem(
 
 
 def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: float = 2.0) -> Drawing:
-    """What is left of the surface after unloading, and the force over the approach with unloading, beside the
-    elastic curve. Unloading in one step is a single point: a line to it would be no load curve.
-    """
+    """What is left of the surface, and force over approach with unloading, beside the elastic curve."""
     a, rows = hertz.contact_radius, profile_rows("FEM")
     found = []
     for result in (sam, fem):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of repeated loading: plastic strain of each period, loops of stress and strain of three
-points, and the map of classes in the plane y = 0.
-"""
+"""Figures of repeated loading: strain of each period, loops of three points, map of classes in y = 0."""
 
 from __future__ import annotations
 
@@ -14,16 +12,7 @@ from matplotlib.patches import Patch
 
 from sam.scene import PLASTIC_STRAINS
 from verification.figures.lines import PLAIN, Curve, curves
-from verification.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Drawing,
-    sheet,
-)
+from verification.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, Drawing, sheet
 from verification.runs.files import Run, mesh_of
 from verification.runs.meshes import FIELDS
 
@@ -54,9 +43,7 @@ def drawings_of(run: Run) -> dict[str, Drawing]:
 
 
 def strain_per_period(run: Run) -> Drawing:
-    """The largest accumulated strain that each period adds, the largest change of the plastic
-    strain, and the floor below which strain counts as none; a marker for the class of the body.
-    """
+    """Strain that each period adds, its change, and the floor below which it is none; class markers."""
     table = run.tables["cycles"]
     table = table[np.isfinite(table["period"].to_numpy(dtype=float))]
     period, verdict = table["period"].to_numpy(dtype=float), table["verdict"].to_numpy()
@@ -84,9 +71,7 @@ def strain_per_period(run: Run) -> Drawing:
 
 
 def loops(run: Run) -> Drawing:
-    """Stress over plastic strain of three points in the last period, of each the component that
-    strains most, counted from the start of the period.
-    """
+    """Stress over plastic strain of three points in the last period, in the component that strains most."""
     drawn: dict[str, Curve] = {}
     for (number, points), color in zip(
         run.tables["loops"].groupby("point"), (BLUE, VERMILION, GREEN), strict=False
@@ -111,9 +96,7 @@ def loops(run: Run) -> Drawing:
 
 
 def classified(folder: Path) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners (n, 4, 2) of the cells or elements that touch the plane y = 0, x and z in m, and
-    their classes (n,); None where nothing is judged.
-    """
+    """Corners (n, 4, 2), x and z in m, of cells that touch y = 0, and classes (n,); None if not judged."""
     of_sam = (folder / BODY).exists()
     mesh = mesh_of(folder, BODY if of_sam else FIELDS)
     if "class" not in mesh.cell_data:

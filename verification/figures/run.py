@@ -44,14 +44,11 @@ MICRO, GIGA = 1e6, 1e-9
 PARTS = {"loading": "-o", "unloading": "--s", "constant force": ":^", "unloaded in one step": "s"}
 """Parts of a history -> their line and marker."""
 NOTHING = 1e-9
-"""Of the approach: a gap that is smaller everywhere is rounding, as opposite a punch. So is such a change of
-friction.
-"""
+"""Of the approach: a smaller gap everywhere is rounding, as opposite a punch; so of friction."""
 
 
 def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_: None) -> list[Path]:
     """Write the figures of a run into its folder `figures`; returns the paths (PNG and CSV of each, or PDF).
-
     Raises FolderError (a ValueError) when the folder holds no result. A run without load has only its history
     to show, one that did not reach its peak the last load that it reached.
     """
@@ -126,9 +123,8 @@ def _plain(label: str) -> str:
 
 def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
     """Pressure, displacement and gap along the row of the largest pressure: all spots of the row with what is
-    beside them, everything when there is no contact.
-
-    Beside y = 0, where displacement and gap are not kept, the pressure and the heights of a rough surface.
+    beside them, everything when there is no contact. Beside y = 0, where displacement and gap are not kept,
+    the pressure and the heights of a rough surface.
     """
     horizontal, gap = "$x$ [$\\mu$m]", "gap [$\\mu$m]"
     pitch = np.diff(surface.y).min() if surface is not None and surface.y.size > 1 else 0.0
@@ -178,9 +174,8 @@ def axis(run: Run, section: Section) -> Drawing:
 
 def history(run: Run) -> Drawing:
     """Force over approach, a line through the rows of each part of the history that has several, beside the
-    elastic contact of Hertz where it applies; elastic unloading in one step is a point alone.
-
-    Where the pressure is given there is no approach: over the number of the row.
+    elastic contact of Hertz where it applies; elastic unloading in one step is a point alone. Where the
+    pressure is given there is no approach: over the number of the row.
     """
     table = run.tables["history"]
     approach, force = (table[name].to_numpy() for name in ("approach_m", "force_N"))

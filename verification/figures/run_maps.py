@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Maps of one run: fields in the plane through the largest pressure or plastic strain, pressure and friction
-over the contact, wear.
-"""
+"""Maps of one run: fields in a plane, pressure and friction over the contact, wear."""
 
 from __future__ import annotations
 
@@ -109,9 +107,7 @@ def _largest(run: Run, section: Section, column: str, drawn_as: tuple[np.ndarray
 
 
 def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
-    """A field over the contact, nothing out of it, with the outline of the contact and the largest
-    value, of the cells that count: within a dashed frame, where some do not.
-    """
+    """A field over the contact, with its outline and the largest value of the cells that count."""
     (unit, name), touching = UNITS[column], surface.touching
     x, y, field = MICRO * surface.x, MICRO * surface.y, unit * surface.in_contact(column)
     with sheet(5.0, 3.8, layout="compressed") as (figure, panel):
@@ -141,9 +137,7 @@ def contact_map(surface: SurfaceMap, column: str, label: str) -> Drawing:
 
 
 def worn(run: Run) -> Drawing:
-    """The depth worn after the last cycle, and the surface before and after along the row through
-    its deepest cell.
-    """
+    """The depth worn at last, and the surface before and after along the row through its deepest cell."""
     scar = Scar.of(run.tables)
     i, j = np.unravel_index(np.nanargmax(scar.worn), scar.worn.shape)
     x, y, depth = MICRO * scar.x, MICRO * scar.y, NANO * np.where(scar.worn > 0.0, scar.worn, np.nan)

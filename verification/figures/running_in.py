@@ -67,9 +67,7 @@ def _ends(places: np.ndarray) -> tuple[float, float]:
 
 
 def _relief(panel: Axes, scar: Scar) -> None:
-    """The worn surface around its scar, or without one its contact, and a third of its size beside
-    it, as if lit from the upper left; and the edge of what is worn.
-    """
+    """The worn surface around its scar or contact, as if lit from the upper left, with the scar's edge."""
     marked, near = scar.worn > 0.0 if (scar.worn > 0.0).any() else scar.in_contact, []
     for axis in (1, 0):
         cells = np.flatnonzero(marked.any(axis=axis)) if marked.any() else np.arange(marked.shape[1 - axis])

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of their own kind: bars with bounds, energies over a load path, heat maps of what a film
-changes, two inputs of a study, and every number of SAM beside its reference.
-"""
+"""Figures of their own kind, each by one function."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator
 from scipy.interpolate import RectBivariateSpline
 
-from verification.energy.balance import Balance
+from verification.energy import Balance
 from verification.figures.style import (
     BLACK,
     BLUE,
@@ -38,9 +36,7 @@ if TYPE_CHECKING:
 
 
 def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawing:
-    """Relative deviation of SAM from its reference, a row for each group of cases. pairs: (group, kind of the
-    reference, predicted, reference, case, quantity).
-    """
+    """Deviation of SAM by group. pairs: (group, kind of reference, predicted, reference, case, quantity)."""
     groups = list(dict.fromkeys(pair[0] for pair in pairs))
     kinds = sorted({pair[1] for pair in pairs}, reverse=True)
     data = Columns("group", "against", "predicted", "reference", "case", "quantity")
@@ -75,9 +71,7 @@ def _signed(value: float, unit: str = "") -> str:
 
 
 def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
-    """A bar with its bounds for each statement. rows: words, points at which it holds, points at
-    which it says anything, bounds of the share.
-    """
+    """A bar with bounds for each statement. rows: words, points at which it holds, of how many, bounds."""
     table = Columns("statement", "holds", "of", "low", "high")
     names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
     low, high = np.array(bounds).T
@@ -112,9 +106,7 @@ def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:
 
 
 def sensitivities(rows: Sequence[Mapping]) -> Drawing:
-    """How much each varied key moves the main quantities: a panel for each of them, a bar with its confidence
-    interval for each key. rows: of the table of indices, quantities and indices of both methods among them.
-    """
+    """How each varied key moves the main quantities, with confidence intervals. rows: of the indices."""
     table, of = Columns("quantity", "key", "value", "low", "high"), dict[str, list[Mapping]]()
     for row in reversed([each for each in rows if each["index"] in SHOWN]):
         of.setdefault(row["quantity"], []).append(row)
@@ -144,9 +136,7 @@ def _bars(
 
 
 def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
-    """Shares of the largest work over the load steps; panels: title -> (SAM, FEM or None). Areas
-    and line: SAM; crosses: FEM.
-    """
+    """Shares of the largest work over the steps: title -> (SAM, FEM or None). Areas and line: SAM."""
     parts = {"dissipated": ORANGE, "stored by residual stress": GREEN, "recovered on unloading": BLUE}
     rows = Columns("panel", "model", "state", "force_N", "work", "stored", "dissipated")
     with sheet(4.2 * len(panels), 3.4, len(panels), sharey=True) as (figure, axes):
@@ -172,11 +162,10 @@ def over_path(panels: Mapping[str, tuple[Balance, Balance | None]]) -> Drawing:
 
 
 def change_maps(maps: Mapping[str, DataFrame], paper: tuple[float, Mapping[str, float]]) -> Drawing:
-    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms,
-    with lines of 1 % and 5 %, one colour scale for all, and the film of the paper.
-
-    maps: title -> changes as shares over thickness/a0 (index) and E1/E2 (columns); paper: its
-    modulus ratio, and label -> thickness/a0 on some contact radii.
+    """Heat maps on logarithmic axes, of a bicubic spline through the points over the logarithms, with lines
+    of 1 % and 5 %, one colour scale for all, and the film of the paper. maps: title -> changes as shares over
+    thickness/a0 (index) and E1/E2 (columns); paper: its modulus ratio, and label -> thickness/a0 on some
+    contact radii.
     """
     rows = Columns("map", "thickness_over_a0", "E1_over_E2", "change_percent")
     largest = 100.0 * max(np.abs(each.to_numpy()).max() for each in maps.values())

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One look for all figures, and how they are written. The only place besides its siblings that
-imports matplotlib.
-"""
+"""One look for all figures, and how they are written."""
 
 from __future__ import annotations
 
@@ -148,11 +146,7 @@ def sheet(
     layout: str = "constrained",
     **options: Any,
 ) -> Iterator[tuple[Figure, Any]]:
-    """An empty figure (inches) in the house style and its axes.
-
-    panels: None for one, a number of them in a row, or (rows, columns) of a grid; options: of
-    `Figure.subplots`.
-    """
+    """An empty figure (inches) and its axes. panels: None, a number in a row, or (rows, columns)."""
     grid = panels if isinstance(panels, tuple) else (1, panels or 1)
     with style():
         figure = new_figure(width, height, layout)
@@ -187,9 +181,7 @@ def save(
     long: int = LONG,
     small: bool = True,
 ) -> list[Path]:
-    """Write stem.png and, if `data`, stem.csv (beyond `long` bytes compressed, stem.csv.gz), or
-    stem.pdf alone; equal drawings give equal bytes, without a date. Returns what it wrote.
-    """
+    """Write stem.png and stem.csv (packed beyond `long` bytes), or stem.pdf; equal bytes. The paths."""
     paths = [stem.with_name(f"{stem.name}.{'pdf' if pdf else 'png'}")]
     write_atomically(paths[0], encoded(drawing.figure, pdf=pdf, small=small))
     if data and not pdf:
@@ -206,9 +198,7 @@ def save(
 
 
 def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
-    """A figure as PDF, or as PNG; small: with a palette of 256 colours, the most frequent ones where a map
-    has many, else such that each line keeps its colour.
-    """
+    """A figure as PDF, or as PNG; small: with a palette of 256 colours that keeps those of lines."""
     buffer, smaller = io.BytesIO(), io.BytesIO()
     with style():
         figure.savefig(

@@ -85,9 +85,7 @@ def sweep_figure(study: Study, rows: Sequence[Mapping], path: Path) -> None:
 
 
 def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
-    """Of a grid of two varied numbers a map for each quantity, else panels: quantities down, varied keys
-    across. rows: column of the table -> value, a mapping a point.
-    """
+    """Of two varied numbers a map for each quantity, else panels by key. rows: column -> value, of points."""
     shown = {
         name: look for name, look in QUANTITIES.items() if any(row.get(name) for row in rows)
     } or QUANTITIES
@@ -100,9 +98,7 @@ def summary(study: Study, rows: Sequence[Mapping]) -> Drawing:
 
 
 def _maps(study: Study, rows: Sequence[Mapping], shown: Mapping[str, tuple[str, float]]) -> Figure | None:
-    """A map for each quantity over two varied numbers; what did not converge is a cross. None where lines say
-    it better.
-    """
+    """A map for each quantity over two numbers; crosses did not converge. None where lines say it better."""
     if study.mode != "grid" or len(study.vary) != 2:
         return None
     (kx, ax), (ky, ay) = study.vary.items()
@@ -181,9 +177,7 @@ def _lines_over(study: Study, rows: Sequence[Mapping], shown: Mapping[str, tuple
 
 
 def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
-    """Where the values stand: numbers in the unit of the study, texts and lists one by one with
-    their spellings.
-    """
+    """Where the values stand: numbers in the unit of the study, texts and lists one by one."""
     if all(isinstance(value, int | float) for value in values):
         scale = in_si(f"1 {axis.unit}") if axis.unit else 1.0
         return np.array(values, dtype=float) / scale, []
@@ -192,9 +186,7 @@ def _places(axis: Axis, values: Sequence) -> tuple[np.ndarray, list[str]]:
 
 
 def _lines(rows: Sequence[Mapping], others: Mapping[str, Axis]) -> dict[str, np.ndarray]:
-    """Numbers of the rows that agree in the other keys, (n,) each, by what they agree in; none if
-    there are too many lines to tell apart.
-    """
+    """Rows that agree in the other keys, (n,) each, by what they agree in; none if too many to tell."""
     groups: dict[tuple, list[int]] = {}
     for k, row in enumerate(rows):
         groups.setdefault(tuple(row[other] for other in others), []).append(k)

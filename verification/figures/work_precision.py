@@ -15,14 +15,7 @@ from verification.figures.style import Columns, Drawing, log_ticks, sheet
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-METHODS = (
-    "SAM",
-    "FEM, axisymmetric",
-    "SAM, decoupled",
-    "SAM, the paper's loop",
-    "SAM, two grids",
-    "FEM, 3D",
-)
+METHODS = ("SAM", "FEM, axisymmetric", "SAM, decoupled", "SAM, the paper's loop", "SAM, two grids", "FEM, 3D")
 LOOKS = dict(zip(METHODS, CYCLES, strict=True))
 LOWEST, DEEPEST = 1e-6, 0.3  # errors below it, or below so much of the floor, are drawn there
 

@@ -28,10 +28,8 @@ from .checks import not_negative, poisson, positive
 
 def in_plane_strain(pressure: float, young: float, nu: float) -> float:
     """Strain of the body's surface in every direction at the centre of Hertz's contact (Johnson 1985, Eq.
-    3.46 in Hooke's law).
-
-    sxx = syy = -(1 + 2 nu)/2 p and szz = -p: strain -(1 + nu)(1 - 2 nu)/2 p/E. pressure: p(0) in Pa; young,
-    nu: of the body.
+    3.46 in Hooke's law). sxx = syy = -(1 + 2 nu)/2 p and szz = -p: strain -(1 + nu)(1 - 2 nu)/2 p/E.
+    pressure: p(0) in Pa; young, nu: of the body.
     """
     nu = poisson("nu", nu)
     return (
@@ -53,11 +51,9 @@ def printed_thinning(
     pressure: float, friction: float, film: tuple[float, float, float], body: tuple[float, float]
 ) -> float:
     """Thinning at the centre of Hertz's contact by Eqs. 12-14 as printed: negative, as the film grows thicker
-    there.
-
-    film: E and nu, then the yield stress in Pa; body: E in Pa and nu. Of the printed stress only szz - sxx,
-    to which the sum of the strains gives nothing, and sxz = friction p count; the stress returns to the yield
-    stress radially, at given strains.
+    there. film: E and nu, then the yield stress in Pa; body: E in Pa and nu. Of the printed stress only szz -
+    sxx, to which the sum of the strains gives nothing, and sxz = friction p count; the stress returns to the
+    yield stress radially, at given strains.
     """
     (young, nu, yield_stress), p = film, not_negative("pressure", pressure)
     shear = positive("young", young) / (2.0 * (1.0 + poisson("nu", nu)))
@@ -70,9 +66,8 @@ def printed_thinning(
 
 def overall_coefficient(pressure, failed, low: float, high: float, *, cell_area: float) -> float:
     """Traction over load where a film has low friction and its failed cells high: low + (high - low)
-    W_high/W.
-
-    pressure in Pa and failed (bool) of each cell, one shape; cell_area in m^2. ValueError without load.
+    W_high/W. pressure in Pa and failed (bool) of each cell, one shape; cell_area in m^2. ValueError without
+    load.
     """
     pressure, failed = np.asarray(pressure, dtype=float), np.asarray(failed, dtype=bool)
     if pressure.shape != failed.shape:
@@ -84,11 +79,9 @@ def overall_coefficient(pressure, failed, low: float, high: float, *, cell_area:
 
 def flow_gradient(yield_stress: float, thickness: float) -> float:
     """Pressure gradient in Pa/m at which the film flows out, bonded below and smooth above:
-    yield_stress/(sqrt(3) thickness).
-
-    The shear stress on the bonded face, the shear yield stress there, balances the change of the pressure
-    over the thickness. Of first order in thickness over radius; twice that between two rough plates (Prandtl
-    1923; Hill 1950, chapter VIII).
+    yield_stress/(sqrt(3) thickness). The shear stress on the bonded face, the shear yield stress there,
+    balances the change of the pressure over the thickness. Of first order in thickness over radius; twice
+    that between two rough plates (Prandtl 1923; Hill 1950, chapter VIII).
     """
     return positive("yield_stress", yield_stress) / math.sqrt(3.0) / positive("thickness", thickness)
 
@@ -113,10 +106,9 @@ def swift(B: float, C: float, n: float, strain: float) -> float:
 
 def tear_pressure(strength: float, friction: float) -> float:
     """Pressure in Pa above which the traction alone strains the surface past its limit: strength/(sqrt(3)
-    friction).
-
-    strength: yield stress in Pa of the surface at the limit, its factor over depth included. The shear stress
-    at the surface is friction * p whatever flows, and sigma_y >= von Mises stress >= sqrt(3) |s_xz|.
+    friction). strength: yield stress in Pa of the surface at the limit, its factor over depth included. The
+    shear stress at the surface is friction * p whatever flows, and sigma_y >= von Mises stress >= sqrt(3)
+    |s_xz|.
     """
     return positive("strength", strength) / (math.sqrt(3.0) * positive("friction", friction))
 
@@ -128,12 +120,10 @@ def largest_pressure(yield_stress: float, friction: float) -> float:
 
 def thinning(pressure: float, friction: float, strain: float, film: tuple[float, float, float]) -> float:
     """Normal plastic strain of the perfectly plastic film, positive: thinner; 0 below yield, inf without
-    equilibrium.
-
-    pressure in Pa; strain: of the body's surface, in every direction; film: Young's modulus in Pa, Poisson's
-    ratio, yield stress in Pa. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s + p)^2 + 3
-    (friction p)^2 = yield_stress^2. Hooke's law takes its elastic share off the strain, what is left is
-    plastic, and the film thins by twice that: of the path nothing is needed.
+    equilibrium. pressure in Pa; strain: of the body's surface, in every direction; film: Young's modulus in
+    Pa, Poisson's ratio, yield stress in Pa. With szz = -p and sxz = friction p, yield fixes sxx = syy = s: (s
+    + p)^2 + 3 (friction p)^2 = yield_stress^2. Hooke's law takes its elastic share off the strain, what is
+    left is plastic, and the film thins by twice that: of the path nothing is needed.
     """
     young, nu, yield_stress = film
     p, tau = not_negative("pressure", pressure), not_negative("friction", friction) * pressure
@@ -146,15 +136,11 @@ def thinning(pressure: float, friction: float, strain: float, film: tuple[float,
 
 
 def film_pressure(
-    limit: float,
-    friction: float,
-    film: tuple[float, float, float],
-    body: tuple[float, float],
+    limit: float, friction: float, film: tuple[float, float, float], body: tuple[float, float]
 ) -> float:
-    """Pressure in Pa above which the film thins by more than `limit`, or has no equilibrium.
-
-    film: Young's modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's
-    ratio, elastic, strained as at the centre of a Hertz contact.
+    """Pressure in Pa above which the film thins by more than `limit`, or has no equilibrium. film: Young's
+    modulus in Pa, Poisson's ratio and yield stress in Pa; body: Young's modulus and Poisson's ratio, elastic,
+    strained as at the centre of a Hertz contact.
     """
     yield_stress = film[2]
 

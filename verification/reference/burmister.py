@@ -17,11 +17,9 @@ from .layered_axisymmetric import CoatedHalfSpace, hankel_stress, wave_numbers
 
 def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, *, pressure: float = 1.0) -> np.ndarray:
     """Stresses in the plane theta = 0 for every r (n,) and z (m,) > 0, in m: (n, m, 6) in the unit of the
-    pressure.
-
-    At z = thickness the body's side. The integrand decays as exp(-k z) and is integrated to k z = 40, in
-    panels no longer than its oscillation allows: rounding error, at a cost that grows as (a + r)/z. Pressure
-    on r < contact_radius (m).
+    pressure. At z = thickness the body's side. The integrand decays as exp(-k z) and is integrated to k z =
+    40, in panels no longer than its oscillation allows: rounding error, at a cost that grows as (a + r)/z.
+    Pressure on r < contact_radius (m).
     """
     a = positive("contact_radius", contact_radius)
     r, z = np.atleast_1d(depth("r", r)), np.atleast_1d(depth("z", z))

@@ -41,9 +41,8 @@ def capped_pressure(
     most: int = 5000,
 ) -> np.ndarray:
     """The pressure (nx, ny) in Pa of heights in m that repeat below a rigid plane; modulus: E* in Pa; mean:
-    pressure in Pa; tolerance: of gap and penetration, over the standard deviation of the heights.
-
-    ValueError for a mean not between 0 and the hardness, RuntimeError without convergence.
+    pressure in Pa; tolerance: of gap and penetration, over the standard deviation of the heights. ValueError
+    for a mean not between 0 and the hardness, RuntimeError without convergence.
     """
     if not 0.0 < mean < hardness:
         raise ValueError(f"the mean pressure must lie between 0 and the hardness {hardness:g}, not {mean:g}")

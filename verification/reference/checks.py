@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One validator per concept; each returns the cleaned value or raises a ValueError that names the
-argument.
-"""
+"""Validators, which return the cleaned value or raise a ValueError that names the argument."""
 
 from __future__ import annotations
 

@@ -46,10 +46,8 @@ def film_contact(
     *,
     counter: float = math.inf,
 ) -> CoatedContact:
-    """The contact in units of the body and of a0: body modulus E2/(1 - nu2^2) = 1, R = 1, a0 = 1.
-
-    thickness: over a0; young: E1/E2; counter: contact modulus of the counter-body over the body's, infinite
-    if rigid.
+    """The contact in units of the body and of a0: body modulus E2/(1 - nu2^2) = 1, R = 1, a0 = 1. thickness:
+    over a0; young: E1/E2; counter: contact modulus of the counter-body over the body's, infinite if rigid.
     """
     body = 1.0 - poisson_body**2
     layers = CoatedHalfSpace(positive("young", young) * body, poisson, thickness, body, poisson_body)
@@ -93,10 +91,8 @@ def _on_one_side(field: Callable, width: float, top: float, bottom: float, *, po
 
 def search(field: Callable, r: np.ndarray, depths: np.ndarray) -> LargestChange:
     """Largest von Mises stress of field(r, z): on a grid of ascending r (n,) and z (m,), then on finer ones
-    around it.
-
-    Five grids, each four times finer than the last: with 25 places the place to about 2e-4 of the range, the
-    value to 1e-7.
+    around it. Five grids, each four times finer than the last: with 25 places the place to about 2e-4 of the
+    range, the value to 1e-7.
     """
     for _ in range(5):
         mises = von_mises(field(r, depths))
@@ -119,7 +115,6 @@ def breaking_thickness(
     change: Callable[[CoatedContact], float] = pressure_change,
 ) -> float:
     """Smallest thickness/a0 at which |change| reaches the limit; infinite if it does not up to ``THICK``.
-
     young: E1/E2; counter: contact modulus of the counter-body over the body's; change: ``pressure_change`` or
     ``mises_change``. ValueError if the limit is passed at ``THIN`` already.
     """

@@ -41,10 +41,9 @@ TAIL = 1e-11
 @dataclass(frozen=True)
 class CoatedContact:
     """Contact of radius a between the paraboloid r^2/(2 R) and a coated half-space: ``solve_radius``,
-    ``solve_force``.
-
-    counter_modulus: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid. scale = E a^2/(pi R); chi =
-    scale times the sum of coefficients times P_2n(t/a); penetration = approach R/a^2. SI units.
+    ``solve_force``. counter_modulus: E/(1 - nu^2) of the counter-body in Pa, infinite if rigid. scale = E
+    a^2/(pi R); chi = scale times the sum of coefficients times P_2n(t/a); penetration = approach R/a^2. SI
+    units.
     """
 
     layers: CoatedHalfSpace
@@ -82,10 +81,9 @@ class CoatedContact:
         )
 
     def pressure(self, r) -> np.ndarray:
-        """p(r), Pa, 0 outside; r >= 0 in m, any shape.
-
-        With x = t/a and t^2 = r^2 + (a^2 - r^2) u^2: p = scale/a sqrt(1 - r^2/a^2) integral_0^1 psi du, where
-        psi = -(d chi/dx)/x is a polynomial in x^2, which Gauss points integrate exactly.
+        """p(r), Pa, 0 outside; r >= 0 in m, any shape. With x = t/a and t^2 = r^2 + (a^2 - r^2) u^2: p =
+        scale/a sqrt(1 - r^2/a^2) integral_0^1 psi du, where psi = -(d chi/dx)/x is a polynomial in x^2, which
+        Gauss points integrate exactly.
         """
         rho2 = (depth("r", r) / self.contact_radius) ** 2
         u, w = gauss(len(self.coefficients))
@@ -118,10 +116,8 @@ class CoatedContact:
 
     def residual(self, count: int = 33) -> float:
         """Largest error of the surface's shape in the contact, over a^2/(2 R), at radii and wave numbers of
-        its own.
-
-        u(r) = (2/E) [integral_0^r chi/sqrt(r^2 - t^2) dt + integral_0^inf g P J0(k r) dk] is approach -
-        r^2/(2 R).
+        its own. u(r) = (2/E) [integral_0^r chi/sqrt(r^2 - t^2) dt + integral_0^inf g P J0(k r) dk] is
+        approach - r^2/(2 R).
         """
         a, h = self.contact_radius, self.layers.thickness
         r = a * np.linspace(0.0, 1.0, count)
@@ -136,11 +132,10 @@ class CoatedContact:
         return float(error * 2 * self.radius / a**2)
 
     def stress(self, r, z, film: bool | None = None) -> np.ndarray:
-        """Stresses in the plane theta = 0 for every r (n,) and z (m,), in m: (n, m, 6) in Pa.
-
-        film: the side of the interface, None: film above it and body at and below it. The body's stresses are
-        a Hankel integral over P(k); the film's are those of the bare half-space under p, closed forms, and
-        what the interface sends back, a Hankel integral.
+        """Stresses in the plane theta = 0 for every r (n,) and z (m,), in m: (n, m, 6) in Pa. film: the side
+        of the interface, None: film above it and body at and below it. The body's stresses are a Hankel
+        integral over P(k); the film's are those of the bare half-space under p, closed forms, and what the
+        interface sends back, a Hankel integral.
         """
         r, z = np.atleast_1d(depth("r", r)), np.atleast_1d(depth("z", z))
         h = self.layers.thickness
@@ -171,9 +166,8 @@ class CoatedContact:
 
     def _direct(self, r, z) -> np.ndarray:
         """Stresses of a bare half-space of the film's material under p(r): Hertz contacts of all radii up to
-        a.
-
-        p = scale/a [psi(1) sqrt(1 - x^2) - integral_x^1 psi'(y) sqrt(y^2 - x^2) dy], x = r/a; split at y = x.
+        a. p = scale/a [psi(1) sqrt(1 - x^2) - integral_x^1 psi'(y) sqrt(y^2 - x^2) dy], x = r/a; split at y =
+        x.
         """
         a, nu = self.contact_radius, self.layers.poisson
         psi = self._slopes(1.0)[0]
@@ -196,9 +190,7 @@ def solve_radius(
     layers: CoatedHalfSpace, radius: float, contact_radius: float, counter_modulus: float = math.inf
 ) -> CoatedContact:
     """The contact of radius a (m) of a paraboloid of radius R (m); its force follows. ``CoatedContact`` for
-    the rest.
-
-    RuntimeError where the pressure would be tensile somewhere, or the expansion does not converge.
+    the rest. RuntimeError where the pressure would be tensile somewhere, or the expansion does not converge.
     """
     a, h = positive("contact_radius", contact_radius), layers.thickness
     positive("radius", radius)
@@ -263,10 +255,8 @@ def solve_force(
 
 def thin_layer(layers: CoatedHalfSpace, radius: float, contact_radius: float) -> tuple[float, float]:
     """Peak pressure (Pa) and force (N) of a thin bonded layer on a rigid base, a >> thickness (Johnson 1985,
-    5.8).
-
-    Oedometer modulus M = E (1 - nu)/((1 + nu)(1 - 2 nu)): p = M (a^2 - r^2)/(2 R h), F = pi M a^4/(4 R h); nu
-    < 0.5.
+    5.8). Oedometer modulus M = E (1 - nu)/((1 + nu)(1 - 2 nu)): p = M (a^2 - r^2)/(2 R h), F = pi M a^4/(4 R
+    h); nu < 0.5.
     """
     nu, a = layers.poisson, positive("contact_radius", contact_radius)
     if nu >= 0.5:
@@ -283,10 +273,9 @@ def _excess(layers: CoatedHalfSpace, counter_modulus: float, k: np.ndarray) -> n
 
 
 def _cosines(q: np.ndarray, orders: int) -> np.ndarray:
-    """(-1)^n j_2n(q) = integral_0^1 P_2n(x) cos(q x) dx for n < orders: (orders, len(q)); q > 0.
-
-    j_n by its recurrence upwards while n <= q, beyond by the ratios j_n/j_(n-1) from their continued fraction
-    (DLMF 10.51, 10.74(v)): both stable there, and much faster than one call for each order.
+    """(-1)^n j_2n(q) = integral_0^1 P_2n(x) cos(q x) dx for n < orders: (orders, len(q)); q > 0. j_n by its
+    recurrence upwards while n <= q, beyond by the ratios j_n/j_(n-1) from their continued fraction (DLMF
+    10.51, 10.74(v)): both stable there, and much faster than one call for each order.
     """
     last = 2 * orders - 2
     ratio = np.zeros((last + 1, len(q)))

@@ -43,7 +43,6 @@ def coated_sliding_stress(
     film: bool = False,
 ) -> np.ndarray:
     """Stresses in the plane y = 0 at every x (n,) and z (m,) in m: (n, m, 6) in the unit of the pressure.
-
     film: the places are those of the film, 0 <= z <= thickness, else of the body, z >= thickness; at the
     interface both exist. In the film what the interface sends back is added to Hamilton's closed form for a
     half-space of film. Gauss quadrature to rounding; its cost grows as contact_radius/thickness. ValueError
@@ -112,10 +111,8 @@ def antiplane(layers: CoatedHalfSpace, k: np.ndarray, z: float, film: bool) -> n
 def along_x(
     k: np.ndarray, weight: np.ndarray, waves: np.ndarray, across: np.ndarray, *, x: np.ndarray
 ) -> np.ndarray:
-    """The sum over wave vectors of the module: (nx, nz, 6).
-
-    weight (n,): the traction's Hankel transform times k dk; waves (4, nz, n): s_zz, s_zL, s_LL, s_TT; across
-    (2, nz, n): t, l.
+    """The sum over wave vectors of the module: (nx, nz, 6). weight (n,): the traction's Hankel transform
+    times k dk; waves (4, nz, n): s_zz, s_zL, s_LL, s_TT; across (2, nz, n): t, l.
     """
     argument = np.outer(x, k)
     first, third = j1(argument), jv(3, argument)

@@ -38,10 +38,9 @@ class Limit:
 
 
 def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
-    """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares.
-
-    h: (n,) cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit
-    and the factor are linear, so the order alone is searched.
+    """Richardson's extrapolation to h = 0 with the observed order (Roache, 1998), by least squares. h: (n,)
+    cell sizes, n >= 3, all different; values: (n,). ValueError otherwise. For each order the limit and the
+    factor are linear, so the order alone is searched.
     """
     h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
     if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):
@@ -88,9 +87,7 @@ class Power:
 
 
 def fit_power(x: Sequence[float], y: Sequence[float], first: float = 0.0) -> Power:
-    """Fit y ~ factor x^exponent to x >= first, three or more of them, y > 0. ValueError otherwise: two points
-    or a zero are no observation.
-    """
+    """Fit y ~ factor x^exponent to three or more x >= first, y > 0; ValueError for fewer, or a zero."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.shape != y.shape or x.ndim != 1 or np.unique(x[x >= first]).size < 3:
         raise ValueError(f"x and y: at least three different values with one y each, not {x} and {y}")

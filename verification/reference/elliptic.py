@@ -21,10 +21,9 @@ from .stress import components, von_mises
 
 
 def axis_ratio(radius_ratio: float) -> float:
-    """b/a of the contact ellipse for radii of curvature R_y/R_x = radius_ratio, to rounding error.
-
-    Root of R_x/R_y = R_D(0, 1, k^2)/R_D(0, k^2, 1), k = b/a (Johnson, section 4.2(c)).
-    Sought in ln k, between 1 and R_y/R_x.
+    """b/a of the contact ellipse for radii of curvature R_y/R_x = radius_ratio, to rounding error. Root of
+    R_x/R_y = R_D(0, 1, k^2)/R_D(0, k^2, 1), k = b/a (Johnson, section 4.2(c)). Sought in ln k, between 1 and
+    R_y/R_x.
     """
     target = math.log(positive("radius_ratio", radius_ratio))
     if target == 0.0:
@@ -40,10 +39,9 @@ def axis_ratio(radius_ratio: float) -> float:
 
 @dataclass(frozen=True)
 class EllipticContact(Checked):
-    """Hertz contact from a force (N), radii of curvature R_x, R_y (m) and contact modulus E* (Pa).
-
-    The profile is x^2/(2 R_x) + y^2/(2 R_y). The semi-axes a (along x) and b (along y) follow from
-    a^3 = F R_x R_D(0, b^2/a^2, 1)/(pi E*); R_x = R_y is the circle.
+    """Hertz contact from a force (N), radii of curvature R_x, R_y (m) and contact modulus E* (Pa). The
+    profile is x^2/(2 R_x) + y^2/(2 R_y). The semi-axes a (along x) and b (along y) follow from a^3 = F R_x
+    R_D(0, b^2/a^2, 1)/(pi E*); R_x = R_y is the circle.
     """
 
     force: float
@@ -76,10 +74,9 @@ class EllipticContact(Checked):
         return self.peak_pressure * np.sqrt(np.maximum(inside, 0.0))
 
     def displacement(self, x, y) -> np.ndarray:
-        """u_z of both surfaces together, m, inside and outside the contact; x, y in m, broadcast.
-
-        (p0 a b/2 E*) integral_l^inf (1 - x^2/A - y^2/B) dw/sqrt(A B w), where l is 0 inside, else the root of
-        x^2/A + y^2/B = 1 (Johnson, section 3.5). Of one body alone: times E* (1 - nu^2)/E.
+        """u_z of both surfaces together, m, inside and outside the contact; x, y in m, broadcast. (p0 a b/2
+        E*) integral_l^inf (1 - x^2/A - y^2/B) dw/sqrt(A B w), where l is 0 inside, else the root of x^2/A +
+        y^2/B = 1 (Johnson, section 3.5). Of one body alone: times E* (1 - nu^2)/E.
         """
         a, b = self.semi_axes
         x2, y2 = (coordinate("x", x) / a) ** 2, (coordinate("y", y) / a) ** 2
@@ -98,11 +95,10 @@ class EllipticContact(Checked):
         return profile - self.approach + self.displacement(x, y)
 
     def axis_stress(self, z, nu: float) -> np.ndarray:
-        """Stresses on the axis x = y = 0, (..., 6) in Pa; z >= 0 in m, any shape.
-
-        With the potentials Phi = integral p/rho dA and Psi = -integral p ln(rho + z) dA of the half-space,
-        2 pi s_zz = Phi_z - z Phi_zz,  2 pi s_xx = 2 nu Phi_z + (1 - 2 nu) Psi_xx - z Phi_xx, s_yy likewise.
-        On the axis l = z^2 and Psi_xx = -2 pi a b p0/(sqrt A (sqrt A + sqrt B)) - z Phi_xx.
+        """Stresses on the axis x = y = 0, (..., 6) in Pa; z >= 0 in m, any shape. With the potentials Phi =
+        integral p/rho dA and Psi = -integral p ln(rho + z) dA of the half-space, 2 pi s_zz = Phi_z - z
+        Phi_zz, 2 pi s_xx = 2 nu Phi_z + (1 - 2 nu) Psi_xx - z Phi_xx, s_yy likewise. On the axis l = z^2 and
+        Psi_xx = -2 pi a b p0/(sqrt A (sqrt A + sqrt B)) - z Phi_xx.
         """
         nu, (a, b) = poisson("nu", nu), self.semi_axes
         zeta, k = depth("z", z) / a, b / a

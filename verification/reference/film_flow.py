@@ -69,9 +69,7 @@ class Film(Checked):
 
     def implicit_step(self, plastic: np.ndarray, point: FlowPoint) -> np.ndarray:
         """Plastic strain (6,) after a backward-Euler step to a point: radial return in six components inside
-        a root search.
-
-        ArithmeticError if no strains off the plane meet the stresses there.
+        a root search. ArithmeticError if no strains off the plane meet the stresses there.
         """
         scale = self.yield_stress / self.young
 
@@ -94,10 +92,8 @@ class Film(Checked):
 
     def along(self, path: Sequence[FlowPoint]) -> np.ndarray:
         """Plastic strain (6,) after the straight lines from point to point, the first one free of plastic
-        strain.
-
-        The rate equations (Prandtl-Reuss), integrated by an explicit method of order 8 between the moments at
-        which flow begins and ends.
+        strain. The rate equations (Prandtl-Reuss), integrated by an explicit method of order 8 between the
+        moments at which flow begins and ends.
         """
         stress, plastic = self._mixed(self.stiffness, path[0])[0], np.zeros(6)
         if von_mises(stress) > self.yield_stress:

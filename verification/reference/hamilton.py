@@ -19,14 +19,13 @@ from .stress import components, von_mises
 
 
 def tangential_stress(x, y, z, peak_traction: float, *, contact_radius: float, nu: float) -> np.ndarray:
-    """Stresses under the traction q = q0 sqrt(1 - r^2/a^2) on the body along +x, (..., 6) in Pa, z >= 0.
-
-    x, y, z in m, broadcast; q0 in Pa, any sign. With c_m, s_m = cos, sin(m theta) and I(m, n) of
+    """Stresses under the traction q = q0 sqrt(1 - r^2/a^2) on the body along +x, (..., 6) in Pa, z >= 0. x,
+    y, z in m, broadcast; q0 in Pa, any sign. With c_m, s_m = cos, sin(m theta) and I(m, n) of
     ``hertz_integrals`` (Hankel form of Cerruti's solution, s_xz(z = 0) = -q), B = nu/2 I30 + zeta/4 I31: s_xx
-    = -c_1 [(2 + nu/2) I10 - 3/4 zeta I11] - c_3 B,   s_yy = -c_1 [3/2 nu I10 - zeta/4 I11] + c_3 B, s_xy =
-    -s_1 [(1 - nu/2) I10 - zeta/4 I11] - s_3 B,     s_zz = -c_1 zeta I11, s_xz = -I00 + zeta/2 I01 - c_2
-    zeta/2 I21,             s_yz = -s_2 zeta/2 I21. Inside the contact at z = 0: s_xx = -q0 pi (4 + nu)
-    x/(8a), s_yy = -3 q0 pi nu x/(8a), s_xy = -q0 pi (2 - nu) y/(8a).
+    = -c_1 [(2 + nu/2) I10 - 3/4 zeta I11] - c_3 B, s_yy = -c_1 [3/2 nu I10 - zeta/4 I11] + c_3 B, s_xy = -s_1
+    [(1 - nu/2) I10 - zeta/4 I11] - s_3 B, s_zz = -c_1 zeta I11, s_xz = -I00 + zeta/2 I01 - c_2 zeta/2 I21,
+    s_yz = -s_2 zeta/2 I21. Inside the contact at z = 0: s_xx = -q0 pi (4 + nu) x/(8a), s_yy = -3 q0 pi nu
+    x/(8a), s_xy = -q0 pi (2 - nu) y/(8a).
     """
     a, nu = positive("contact_radius", contact_radius), poisson("nu", nu)
     x, y, z = coordinate("x", x) / a, coordinate("y", y) / a, depth("z", z) / a
@@ -49,7 +48,6 @@ def sliding_stress(
     x, y, z, peak_pressure: float, *, contact_radius: float, nu: float, friction: float
 ) -> np.ndarray:
     """Stresses under pressure p and traction q = friction * p along +x on the body, (..., 6) in Pa, z >= 0.
-
     x, y, z in m, broadcast; a negative friction coefficient reverses the sliding.
     """
     normal = subsurface_stress(x, y, z, peak_pressure, contact_radius=contact_radius, nu=nu)
@@ -61,7 +59,6 @@ def largest_von_mises(
     peak_pressure: float, contact_radius: float, nu: float, friction: float
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """The two largest von Mises stresses in the plane y = 0: (subsurface, edge), each (stress Pa, x m, z m).
-
     The edge value is that at the trailing edge (-a, 0, 0), where the traction pulls; the subsurface one is
     the largest in |x| <= 0.8 a, 0.1 a <= z <= a, found by a search from a coarse grid. The larger decides
     where yield begins.

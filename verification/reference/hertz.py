@@ -53,10 +53,9 @@ def spheroidal(rho, zeta) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def one_minus_xi_acot(xi) -> np.ndarray:
-    """1 - xi acot(xi) = (xi/3) R_D(1 + xi^2, 1 + xi^2, xi^2) for xi >= 0: no cancellation for large xi.
-
-    R_D is Carlson's integral (DLMF 19.16.5). Below xi = 1e-100, where xi^2 would underflow, the value rounds
-    to 1.
+    """1 - xi acot(xi) = (xi/3) R_D(1 + xi^2, 1 + xi^2, xi^2) for xi >= 0: no cancellation for large xi. R_D
+    is Carlson's integral (DLMF 19.16.5). Below xi = 1e-100, where xi^2 would underflow, the value rounds to
+    1.
     """
     xi = np.asarray(xi, dtype=float)
     regular = xi > 1e-100
@@ -88,9 +87,7 @@ def hertz_integrals(rho, zeta) -> HertzIntegrals:
 
 def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float | None = None) -> float:
     """Contact modulus 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 in Pa; the counter-body is rigid if E2 and nu2
-    are None.
-
-    ValueError if only one of E2, nu2 is given.
+    are None. ValueError if only one of E2, nu2 is given.
     """
     compliance = (1.0 - poisson("nu1", nu1) ** 2) / positive("E1", E1)
     if (E2 is None) != (nu2 is None):
@@ -102,10 +99,9 @@ def effective_modulus(E1: float, nu1: float, E2: float | None = None, nu2: float
 
 @dataclass(frozen=True)
 class CircularContact(Checked):
-    """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa).
-
-    a^3 = 3 F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m,
-    any shape.
+    """Hertz contact from force F (N), relative radius of curvature R (m) and contact modulus E* (Pa). a^3 = 3
+    F R/(4 E*), p0 = 3 F/(2 pi a^2), approach = a^2/R (Johnson 4.22-4.24). Profiles take r >= 0 in m, any
+    shape.
     """
 
     force: float
@@ -146,10 +142,9 @@ class CircularContact(Checked):
         return self.peak_pressure * np.sqrt(np.maximum((1.0 - rho) * (1.0 + rho), 0.0))
 
     def displacement(self, r) -> np.ndarray:
-        """u_z of both surfaces together, m; of one body alone times E* (1 - nu^2)/E.
-
-        Inside pi p0 (2 a^2 - r^2)/(4 a E*); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E*) [acot xi + xi (1 -
-        xi acot xi)] (Johnson 3.42, rearranged so that nothing cancels far away).
+        """u_z of both surfaces together, m; of one body alone times E* (1 - nu^2)/E. Inside pi p0 (2 a^2 -
+        r^2)/(4 a E*); outside, with xi^2 = r^2/a^2 - 1, a p0/(2 E*) [acot xi + xi (1 - xi acot xi)] (Johnson
+        3.42, rearranged so that nothing cancels far away).
         """
         a, p0 = self.contact_radius, self.peak_pressure
         rho = depth("r", r) / a
@@ -159,10 +154,8 @@ class CircularContact(Checked):
         return p0 * a / (2.0 * self.modulus) * shape
 
     def gap(self, r) -> np.ndarray:
-        """Gap r^2/(2R) - approach + u_z, m; exactly 0 inside.
-
-        Outside, with xi^2 = r^2/a^2 - 1: gap = a^2/(pi R) [(xi - atan xi) + xi^2 atan xi], positive term by
-        term.
+        """Gap r^2/(2R) - approach + u_z, m; exactly 0 inside. Outside, with xi^2 = r^2/a^2 - 1: gap = a^2/(pi
+        R) [(xi - atan xi) + xi^2 atan xi], positive term by term.
         """
         xi = _outside(depth("r", r) / self.contact_radius)
         excess = xi**3 / 3.0 * elliprd(1.0 + xi**2, 1.0 + xi**2, 1.0)  # xi - atan(xi)
@@ -176,11 +169,9 @@ def _outside(rho: np.ndarray) -> np.ndarray:
 
 def subsurface_stress(x, y, z, peak_pressure: float, *, contact_radius: float, nu: float) -> np.ndarray:
     """All stresses under the Hertz pressure, (..., 6) in Pa, everywhere in z >= 0 (surface, axis and edge
-    included).
-
-    x, y, z in m, broadcast. With I(m, n) of ``hertz_integrals`` (Huber 1904; Hamilton 1983, normal load):
-    s_zz = -p0 [I00 + zeta I01], s_rz = -p0 zeta I11, (s_rr + s_tt)/2 = p0 [zeta I01/2 - (1/2 + nu) I00],
-    (s_tt - s_rr)/2 = p0 [zeta I21/2 - (1/2 - nu) I20].
+    included). x, y, z in m, broadcast. With I(m, n) of ``hertz_integrals`` (Huber 1904; Hamilton 1983, normal
+    load): s_zz = -p0 [I00 + zeta I01], s_rz = -p0 zeta I11, (s_rr + s_tt)/2 = p0 [zeta I01/2 - (1/2 + nu)
+    I00], (s_tt - s_rr)/2 = p0 [zeta I21/2 - (1/2 - nu) I20].
     """
     a, nu = positive("contact_radius", contact_radius), poisson("nu", nu)
     x, y, z = coordinate("x", x) / a, coordinate("y", y) / a, depth("z", z) / a

@@ -18,9 +18,8 @@ from .stress import components, von_mises
 
 @dataclass(frozen=True)
 class LineContact(Checked):
-    """From force F (N), radius R (m), contact modulus E* (Pa) and length L (m).
-
-    a^2 = 4 F R/(pi E* L), p0 = 2 F/(pi a L) = E* a/(2 R) (Johnson 4.43 to 4.45).
+    """From force F (N), radius R (m), contact modulus E* (Pa) and length L (m). a^2 = 4 F R/(pi E* L), p0 = 2
+    F/(pi a L) = E* a/(2 R) (Johnson 4.43 to 4.45).
     """
 
     force: float

@@ -34,7 +34,6 @@ def onset(factor: float, radius: float, modulus: float, yield_stress: float) -> 
 @dataclass(frozen=True)
 class KogutEtsion(Checked):
     """Kogut & Etsion (2002), w* from 0 to 110: Hertz to 1, then two power laws that do not quite meet at 6.
-
     At 6 the second starts 1.7 % (load) and 2.9 % (area) above the end of the first.
     """
 
@@ -106,10 +105,9 @@ def residual_share(w) -> np.ndarray:
 @dataclass(frozen=True)
 class Ghaednia(Checked):
     """Ghaednia et al. (2019), linear hardening, as its authors corrected it (their Eq. 26 has an exponent
-    without its sign and without the approach at first yield). Lengths over the radius of the sphere.
-
-    modulus: E*, young: E of the body that yields, yield_stress in Pa; hardening: slope of stress over the
-    total strain beyond yield, over young.
+    without its sign and without the approach at first yield). Lengths over the radius of the sphere. modulus:
+    E*, young: E of the body that yields, yield_stress in Pa; hardening: slope of stress over the total strain
+    beyond yield, over young.
     """
 
     modulus: float

@@ -53,10 +53,9 @@ class CoatedHalfSpace(Checked):
         return self.young_body / (1.0 - self.poisson_body**2)
 
     def amplitudes(self, k, shear: bool = False) -> np.ndarray:
-        """The six amplitudes for the pressure J0(k r): (n, 6) for wave numbers k (n,) in 1/m, > 0.
-
-        Film: e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness). shear: for
-        the radial traction J1(k r) on the body, outwards, in place of the pressure.
+        """The six amplitudes for the pressure J0(k r): (n, 6) for wave numbers k (n,) in 1/m, > 0. Film:
+        e^{-s}, s e^{-s}, e^{t}, t e^{t}; body: e^{-t}, t e^{-t}, with t = k (z - thickness). shear: for the
+        radial traction J1(k r) on the body, outwards, in place of the pressure.
         """
         k = np.atleast_1d(depth("k", k))
         if not np.all(k > 0):
@@ -86,10 +85,9 @@ class CoatedHalfSpace(Checked):
     def profiles(
         self, k, amplitudes: np.ndarray, z: float, film: bool, *, reflected: bool = False
     ) -> np.ndarray:
-        """The five depth functions ``PROFILES`` at depth z (m): (5, n).
-
-        film: continue the film's (True) or the body's (False) functions to z; reflected: the film's without
-        those of a half-space of the film's material, f = -(2 nu + s) e^{-s}: what the interface sends back.
+        """The five depth functions ``PROFILES`` at depth z (m): (5, n). film: continue the film's (True) or
+        the body's (False) functions to z; reflected: the film's without those of a half-space of the film's
+        material, f = -(2 nu + s) e^{-s}: what the interface sends back.
         """
         h = k * self.thickness
         if not film:
@@ -130,10 +128,9 @@ def _combine(f: np.ndarray, amplitudes: np.ndarray, nu: float) -> np.ndarray:
 
 
 def wave_numbers(length: float, reach: float, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights in k (1/m) of a Hankel integral up to top/length: 24 Gauss points a panel.
-
-    Panels are graded towards k = 0 in k length, where a film much stiffer or softer than its body has its
-    features, and no longer than 36/reach, so that cos(k reach) is integrated to 1e-14.
+    """Nodes and weights in k (1/m) of a Hankel integral up to top/length: 24 Gauss points a panel. Panels are
+    graded towards k = 0 in k length, where a film much stiffer or softer than its body has its features, and
+    no longer than 36/reach, so that cos(k reach) is integrated to 1e-14.
     """
     edges = [0.0, *(4.0 ** -np.arange(8, 0, -1.0)), *(2.0 ** np.arange(0, math.log2(top)))]
     edges = np.append(edges, top) / length
@@ -148,7 +145,6 @@ def wave_numbers(length: float, reach: float, top: float) -> tuple[np.ndarray, n
 
 def hankel_stress(k, weight, profiles: np.ndarray, r) -> np.ndarray:
     """Stresses in the plane theta = 0, (nr, nz, 6): the sum over k of weight times profile times J0 or J1.
-
     weight (n,): the pressure's Hankel transform times k dk; profiles (5, nz, n); r (nr,) in m.
     """
     argument = np.outer(np.atleast_1d(r), k)

@@ -18,9 +18,8 @@ from .stress import components
 @dataclass(frozen=True)
 class EigenstrainSphere:
     """Sphere of a radius (m) centred at (0, 0, centre_depth) (m), linear eigenstrain e on each axis, e > 0
-    expands.
-
-    young in Pa and nu are the same in and outside. ValueError if centre_depth < radius (not in the body).
+    expands. young in Pa and nu are the same in and outside. ValueError if centre_depth < radius (not in the
+    body).
     """
 
     eigenstrain: float
@@ -44,19 +43,15 @@ class EigenstrainSphere:
 
     def surface_displacement(self, x, y) -> np.ndarray:
         """u_z at z = 0, m; x, y in m: -4 (1 - nu) K d/(r^2 + d^2)^(3/2), 4 (1 - nu) K = (4/3)(1 + nu) e
-        radius^3.
-
-        Negative for e > 0: an expansion bulges the surface outwards.
+        radius^3. Negative for e > 0: an expansion bulges the surface outwards.
         """
         distance = np.sqrt(coordinate("x", x) ** 2 + coordinate("y", y) ** 2 + self.centre_depth**2)
         return -4.0 * (1.0 - self.nu) * self.strength * self.centre_depth / distance**3
 
     def stress(self, x, y, z) -> np.ndarray:
-        """Stress inside and outside the sphere, (..., 6) in Pa; x, y, z >= 0 in m, broadcast.
-
-        s_ij = -2 mu K [(1/R1)_,ij + image_ij]; inside the sphere the first term is replaced by the full-space
-        state -4 mu K/radius^3 delta_ij = -2 E e/(3 (1 - nu)) delta_ij. At the sphere's surface: the outside
-        value.
+        """Stress inside and outside the sphere, (..., 6) in Pa; x, y, z >= 0 in m, broadcast. s_ij = -2 mu K
+        [(1/R1)_,ij + image_ij]; inside the sphere the first term is replaced by the full-space state -4 mu
+        K/radius^3 delta_ij = -2 E e/(3 (1 - nu)) delta_ij. At the sphere's surface: the outside value.
         """
         x, y, z = coordinate("x", x), coordinate("y", y), depth("z", z)
         height = z - self.centre_depth
@@ -69,10 +64,8 @@ class EigenstrainSphere:
 
     def _image(self, x, y, z) -> np.ndarray:
         """Field that frees the surface z = 0; G = 1/R2, R2^2 = x^2 + y^2 + (z + d)^2, subscript 3 = d/d(z +
-        d).
-
-        xx: 3 G_11 + 4 nu G_22 + 2 z G_113;  yy: 3 G_22 + 4 nu G_11 + 2 z G_223;  zz: -G_33 + 2 z G_333;
-        yz: G_23 + 2 z G_233;  xz: G_13 + 2 z G_133;  xy: (3 - 4 nu) G_12 + 2 z G_123.
+        d). xx: 3 G_11 + 4 nu G_22 + 2 z G_113; yy: 3 G_22 + 4 nu G_11 + 2 z G_223; zz: -G_33 + 2 z G_333; yz:
+        G_23 + 2 z G_233; xz: G_13 + 2 z G_133; xy: (3 - 4 nu) G_12 + 2 z G_123.
         """
         level = z + self.centre_depth
         g11, g22, g33, g23, g13, g12 = np.moveaxis(_second_derivatives(x, y, level), -1, 0)

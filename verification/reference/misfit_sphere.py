@@ -73,9 +73,8 @@ class Fields:
 @dataclass(frozen=True)
 class GrowingSphere:
     """e0 profile(r/radius) in an infinite body; young in Pa, radius in m, law: yield stress in Pa of the
-    accumulated plastic strain; modulus in Pa, recovery: C and g of its back-stress.
-
-    shares: of e0, which the sphere takes one after the other; (1,) is loading, (1, 0) loading and removal.
+    accumulated plastic strain; modulus in Pa, recovery: C and g of its back-stress. shares: of e0, which the
+    sphere takes one after the other; (1,) is loading, (1, 0) loading and removal.
     """
 
     young: float

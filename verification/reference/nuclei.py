@@ -24,9 +24,8 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
 class Jet:
-    """f + f_1 a + f_2 b + f_12 a b with a^2 = b^2 = 0: a number (or array) with two exact derivatives.
-
-    Fike and Alonso, The development of hyper-dual numbers, AIAA 2011-886.
+    """f + f_1 a + f_2 b + f_12 a b with a^2 = b^2 = 0: a number (or array) with two exact derivatives. Fike
+    and Alonso, The development of hyper-dual numbers, AIAA 2011-886.
     """
 
     __array_ufunc__ = None  # array * Jet is Jet * array
@@ -70,7 +69,6 @@ class Jet:
 
 def mindlin_displacement(place, c, nu: float) -> list[list]:
     """G[k][i]: mu times the displacement along k at `place` by a unit force along i at (0, 0, c), c >= 0.
-
     place: (x, y, z), z >= 0; these and c: floats, arrays or jets. Mindlin (1936), force normal and force
     parallel to the surface.
     """
@@ -155,11 +153,10 @@ def point_nucleus(place, c, nu: float) -> np.ndarray:
 
 
 def cuboid_by_nuclei(place, cuboid, nu: float, order: int = 16) -> np.ndarray:
-    """Stress (6) and displacement (3) at `place` by unit eigenstrains (6) in a cuboid: (9, 6).
-
-    place: (x, y, z); cuboid: (half_x, half_y, top, bottom), the points |x| < half_x, |y| < half_y, top < z <
-    bottom. For points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the
-    volume integral of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
+    """Stress (6) and displacement (3) at `place` by unit eigenstrains (6) in a cuboid: (9, 6). place: (x, y,
+    z); cuboid: (half_x, half_y, top, bottom), the points |x| < half_x, |y| < half_y, top < z < bottom. For
+    points outside, half a cuboid away or more (order^3 Gauss points). The displacement is the volume integral
+    of Eq. 2 of Bosman & Schipper (2011), at z = 0 that of their Eq. 1.
     """
     (x, y, z), (half_x, half_y, top, bottom) = place, cuboid
     t, w = gauss(order)

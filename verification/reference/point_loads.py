@@ -17,10 +17,8 @@ from .stress import components
 
 
 def boussinesq_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
-    """Stress under a normal force (N, > 0 pushes into the body), (..., 6) in Pa; t = R + z.
-
-    2 pi s_xx/F = (1 - 2 nu) [z/R^3 - 1/(R t) + x^2 (2R + z)/(R^3 t^2)] - 3 x^2 z/R^5, 2 pi s_zz/F = -3
-    z^3/R^5.
+    """Stress under a normal force (N, > 0 pushes into the body), (..., 6) in Pa; t = R + z. 2 pi s_xx/F = (1
+    - 2 nu) [z/R^3 - 1/(R t) + x^2 (2R + z)/(R^3 t^2)] - 3 x^2 z/R^5, 2 pi s_zz/F = -3 z^3/R^5.
     """
     x, y, z, R, t = _coordinates(x, y, z)
     D = 1.0 - 2.0 * poisson("nu", nu)
@@ -39,10 +37,8 @@ def boussinesq_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
 
 
 def cerruti_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
-    """Stress under a tangential force (N) on the body along +x, (..., 6) in Pa; t = R + z.
-
-    2 pi s_xx/F = (1 - 2 nu) [x/R^3 - 3x/(R t^2) + x^3 (3R + z)/(R^3 t^3)] - 3 x^3/R^5, 2 pi s_iz/F = -3 x x_i
-    z/R^5.
+    """Stress under a tangential force (N) on the body along +x, (..., 6) in Pa; t = R + z. 2 pi s_xx/F = (1 -
+    2 nu) [x/R^3 - 3x/(R t^2) + x^3 (3R + z)/(R^3 t^3)] - 3 x^3/R^5, 2 pi s_iz/F = -3 x x_i z/R^5.
     """
     x, y, z, R, t = _coordinates(x, y, z)
     D = 1.0 - 2.0 * poisson("nu", nu)

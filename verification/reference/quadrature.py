@@ -23,9 +23,7 @@ def gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _corner_triangle(f, a: float, b: float, z: float, *, swap: bool, order: int) -> np.ndarray:
     """Integral over the triangle (0,0), (a,0), (a,b), x and y exchanged if `swap`; f singular or peaked at
-    (0, 0).
-
-    Duffy's coordinates X = u, Y = u v b/a remove 1/R; u = z sinh t resolves a peak of width z.
+    (0, 0). Duffy's coordinates X = u, Y = u v b/a remove 1/R; u = z sinh t resolves a peak of width z.
     """
     t, wt = gauss(order)
     v, wv = gauss(order)
@@ -50,11 +48,10 @@ def _smooth_rectangle(f: Callable, sides: Sequence[float], z: float, order: int)
 
 
 def over_rectangle(f: Callable, place: Sequence[float], half: Sequence[float], order: int = 96) -> np.ndarray:
-    """Integral of f(x - x', y - y', z) over |x'| <= half_x, |y'| <= half_y.
-
-    f: point-load solution, called with arrays of offsets and the depth z >= 0, returns (..., same shape);
-    place: (x, y, z); half: (half_x, half_y). The point (x, y) may lie inside the rectangle (f may grow like
-    1/R at z = 0) or well outside, about half a rectangle away.
+    """Integral of f(x - x', y - y', z) over |x'| <= half_x, |y'| <= half_y. f: point-load solution, called
+    with arrays of offsets and the depth z >= 0, returns (..., same shape); place: (x, y, z); half: (half_x,
+    half_y). The point (x, y) may lie inside the rectangle (f may grow like 1/R at z = 0) or well outside,
+    about half a rectangle away.
     """
     (x, y, z), (half_x, half_y) = place, half
     x0, x1, y0, y1 = x - half_x, x + half_x, y - half_y, y + half_y
@@ -69,10 +66,8 @@ def over_rectangle(f: Callable, place: Sequence[float], half: Sequence[float], o
 
 
 def point_response(load: int, place, nu: float) -> np.ndarray:
-    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3).
-
-    place: (x, y, z); (9, ...). Boussinesq and Cerruti; the load along y is the one along x with both axes
-    exchanged.
+    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3). place:
+    (x, y, z); (9, ...). Boussinesq and Cerruti; the load along y is the one along x with both axes exchanged.
     """
     young = 2 * (1 + nu)  # mu = 1
     x, y, z = place

@@ -21,9 +21,8 @@ SHEARS = np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre (m,) and radius of the smallest ball that holds points (n, m).
-
-    A quadratic program: the least t + c.c with |s|^2 - 2 s.c <= t at all points.
+    """Centre (m,) and radius of the smallest ball that holds points (n, m). A quadratic program: the least t
+    + c.c with |s|^2 - 2 s.c <= t at all points.
     """
     points = np.asarray(points, dtype=float)
     scale = np.abs(points).max()
@@ -80,7 +79,6 @@ def travelling_limit(
 def in_place_limit(friction: float, *, nu: float = 0.3) -> tuple[float, float]:
     """(p0/k at the shakedown limit, depth in contact radii) of a load that comes and goes in one place: the
     smallest ball about a deviator and none has half its norm, so the limit is twice the load of first yield.
-
     In y = 0 and below the surface: for friction up to 0.25 the worst point is there.
     """
     x, z = np.meshgrid(np.linspace(-0.6, 0.6, 121), np.linspace(0.2, 0.7, 201), indexing="ij")
@@ -111,7 +109,6 @@ def cell_limit(friction: float, h: float, stops: np.ndarray, *, nu: float = 0.3)
 
 def upper_bound(friction: float, *, nu: float = 0.3) -> float:
     """Upper bound of p0/k at which a perfectly plastic body may shake down below a load that travels.
-
     Residual stress that a travelling load leaves is the same along x, so it shifts s_xz(x) at each depth by a
     constant: half the range of s_xz over x is at most k, and at the surface, where the residual s_xz is zero,
     friction p0 is. Without friction this is the limit of Ponter, Hearle and Johnson, J. Mech. Phys. Solids 33

@@ -12,10 +12,8 @@ def components(xx, yy, zz, yz=0.0, *, xz=0.0, xy=0.0) -> np.ndarray:
 
 
 def von_mises(stress) -> np.ndarray:
-    """Von Mises equivalent stress, (..., 6) -> (...), same unit.
-
-    sqrt(((xx-yy)^2 + (yy-zz)^2 + (zz-xx)^2)/2 + 3 (yz^2 + xz^2 + xy^2)). ValueError if the last axis is not 6
-    long.
+    """Von Mises equivalent stress, (..., 6) -> (...), same unit. sqrt(((xx-yy)^2 + (yy-zz)^2 + (zz-xx)^2)/2 +
+    3 (yz^2 + xz^2 + xy^2)). ValueError if the last axis is not 6 long.
     """
     stress = np.asarray(stress)
     if stress.shape[-1:] != (6,):

@@ -21,9 +21,8 @@ from .hertz import CircularContact
 @dataclass(frozen=True)
 class WavyContact(Checked):
     """Contact of a wave (amplitude, wavelength, m) under a mean pressure (Pa), contact modulus E* (Pa), plane
-    strain.
-
-    Contact is complete from p* = pi E* Delta/lambda. All profiles take x in m, any shape, and are periodic.
+    strain. Contact is complete from p* = pi E* Delta/lambda. All profiles take x in m, any shape, and are
+    periodic.
     """
 
     amplitude: float
@@ -48,21 +47,17 @@ class WavyContact(Checked):
 
     @property
     def mean_gap(self) -> float:
-        """Delta (1 - m + m ln m), m = p_mean/p*, m; 0 when complete.
-
-        The gap at the crest is 0, so it is Delta less the approach (relative displacement of the mean
-        planes), with d(approach)/dm = Delta sum_n (P_n + P_n-1)(1 - 2m)/n = -Delta ln m: a pressure increment
-        is that of a row of flat strips, whose Fourier coefficients are Legendre polynomials
-        (Mehler-Dirichlet).
+        """Delta (1 - m + m ln m), m = p_mean/p*, m; 0 when complete. The gap at the crest is 0, so it is
+        Delta less the approach (relative displacement of the mean planes), with d(approach)/dm = Delta sum_n
+        (P_n + P_n-1)(1 - 2m)/n = -Delta ln m: a pressure increment is that of a row of flat strips, whose
+        Fourier coefficients are Legendre polynomials (Mehler-Dirichlet).
         """
         m = self.load_ratio
         return self.amplitude * (1.0 - m + m * math.log(m))
 
     def pressure(self, x) -> np.ndarray:
         """p(x), Pa: 2 p* cos(psi) sqrt(sin^2 psi_a - sin^2 psi) in contact, 0 elsewhere (Johnson, section
-        13.2).
-
-        Complete contact: p_mean + p* cos(2 psi).
+        13.2). Complete contact: p_mean + p* cos(2 psi).
         """
         psi = self._phase(x)
         if self.mean_pressure >= self.complete_pressure:
@@ -71,7 +66,6 @@ class WavyContact(Checked):
 
     def gap(self, x) -> np.ndarray:
         """g(x), m: 0 in contact; outside 2 Delta [S T - m arsinh(T/sqrt m)], S = sin |psi|, T^2 = S^2 - m.
-
         Integral of dg/dx = (4 p*/E*) cos(psi) T, the continuation of the pressure across the edge.
         """
         psi = self._phase(x)
@@ -100,7 +94,6 @@ class WavyContact(Checked):
 @dataclass(frozen=True)
 class DoublyWavyContact(Checked):
     """Contact of a wave in two dimensions (amplitude, wavelength, m) under a mean pressure (Pa), E* in Pa.
-
     There is no closed form but in the limits of light and of nearly complete contact.
     """
 
@@ -140,9 +133,7 @@ class DoublyWavyContact(Checked):
 
     @property
     def fitted_share(self) -> float:
-        """The same in between: fit of Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, to the numbers of
-        Johnson, Greenwood & Higginson.
-        """
+        """In between: Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, by Johnson, Greenwood & Higginson."""
         m = self.load_ratio
         if m >= 0.8:
             return self.heavy_share

@@ -54,9 +54,7 @@ File = bytes | Special
 
 @dataclass(frozen=True)
 class BadInput:
-    """kind: of KINDS; files: path in the folder -> content; name: what a reader is given, in the folder or
-    absolute.
-    """
+    """kind: of KINDS; files: path -> content; name: what a reader is given, in the folder or absolute."""
 
     kind: str
     files: Mapping[str, File]
@@ -368,9 +366,7 @@ def good_meshes() -> dict[str, bytes]:
 
 
 def _surface(rng: random.Random) -> Laid:
-    """A rough scene: its path, the file that it names, what is done to it, or the keys of its generator
-    changed.
-    """
+    """A rough scene: its path, the file that it names, what is done to that, or its generator changed."""
     arrays, path, lines = _arrays(), HEIGHTS, ""
     files = {TABLE: table(), HEIGHTS: good_heights()}
     match rng.randrange(6):
@@ -449,9 +445,7 @@ def shipped(ending: str) -> dict[str, bytes]:
 
 @cache
 def good_scenes() -> tuple[str, ...]:
-    """The scenes of verification/scenes, one with every key of the format, and small ones that solve at
-    once.
-    """
+    """The shipped scenes, one with every key of the format, and small ones that solve at once."""
     return (*(content.decode() for content in shipped(".toml").values()), *hostile.SCENES)
 
 
@@ -558,9 +552,7 @@ def _sizes(rng: random.Random) -> Laid:
 
 
 def _paths(rng: random.Random) -> Laid:
-    """A table of the scene outside its folder, behind a link, in a pipe or device, or with an impossible
-    name.
-    """
+    """A table of the scene elsewhere, behind a link, in a pipe or device, or of an impossible name."""
     place, key = rng.choice(PLACES), rng.choice(("file", "profile"))
     text = PLASTIC.replace('file = "yield.csv"', f"{key} = {toml_string(place)}")
     return _scene(text, {**AROUND, "pickle.npz": with_pickle()})

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the fuzzed inputs are made of: good scenes and tables, and values, units, texts and paths that are
-hostile.
-"""
+"""What the fuzzed inputs are made of: good scenes and tables, and what is hostile."""
 
 from __future__ import annotations
 

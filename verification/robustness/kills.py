@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands in processes of their own, killed on purpose or not, and what they leave: whole files, early
-summaries, tables, processes.
-"""
+"""Commands in processes of their own, killed on purpose or not, and what they leave."""
 
 from __future__ import annotations
 
@@ -36,9 +34,7 @@ Findings = list[tuple[str, str]]
 def start(
     words: Sequence[str], store: Path, command: Sequence[str] = (), cwd: Path | None = None, **variables: str
 ) -> subprocess.Popen:
-    """A command in a session of its own, with a checkpoint at each step. It hears SIGINT, as
-    started from a terminal: a job in the background of a script inherits that it does not.
-    """
+    """A command in a session of its own, with a checkpoint at each step, that hears SIGINT."""
     own = {"SAMFEM_STORE": str(store), "SAMFEM_CHECKPOINT_S": "0", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
         [*(command or SAMFEM), *words],
@@ -100,10 +96,7 @@ def left_behind(pids: Sequence[int]) -> list[int]:
 
 
 def inspect(folder: Path, unfinished: bool = True) -> Findings:
-    """Every file of a folder that is not whole, and summaries that came too early.
-
-    unfinished: temporary files may be there.
-    """
+    """Files of a folder that are not whole, and early summaries. unfinished: temporary files may be there."""
     found = []
     for path in sorted(folder.rglob("*")):
         if path.name.endswith(".part"):
@@ -179,9 +172,7 @@ def killed_solve(
 def killed_sweep(
     words: Sequence[str], folder: Path, table: bytes, delay: float, *, whom: str, rng: random.Random
 ) -> Trial:
-    """Kill a sweep ("parent") or one of its workers ("worker") after `delay`, start it again if
-    need be, and compare.
-    """
+    """Kill a sweep ("parent") or a worker ("worker") after `delay`, start it again if need be, compare."""
     store, file = folder.with_name(f"{folder.name}-store"), folder / "sweep.csv"
     process = start([*words, "--out", str(folder)], store)
     time.sleep(delay)

@@ -28,9 +28,7 @@ class ArchiveError(ValueError):
 
 
 def write_archive(path: Path, arrays: Mapping[str, np.ndarray], values: Mapping) -> None:
-    """Write arrays (no objects among them) and values (what JSON holds; floats keep every digit, NaN and inf
-    allowed).
-    """
+    """Write arrays (no objects) and values (what JSON holds; every digit, NaN and inf allowed)."""
     members = {**arrays, VALUES: np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)}
     members[DIGEST] = digest_of(members)
     with replacing(path) as temporary, open(temporary, "wb") as stream:

@@ -42,9 +42,7 @@ WORDS = {
 
 
 def interval() -> float:
-    """Seconds between checkpoints: INTERVAL_S, or what the environment says. Raises FolderError for what is
-    no such number.
-    """
+    """Seconds between checkpoints, of the environment or INTERVAL_S. FolderError for no such number."""
     text = os.environ.get(INTERVAL, "").strip()
     try:
         seconds = float(text) if text else INTERVAL_S
@@ -115,9 +113,7 @@ class Writer:
 
 @contextmanager
 def interruptible(writer: Writer) -> Iterator[None]:
-    """SIGINT and SIGTERM during the block write the latest checkpoint and end in a KeyboardInterrupt that
-    says so.
-    """
+    """SIGINT and SIGTERM write the latest checkpoint and end in a KeyboardInterrupt that says so."""
 
     def stop(*_signal):
         raise KeyboardInterrupt
@@ -139,9 +135,7 @@ def interruptible(writer: Writer) -> Iterator[None]:
 
 
 def read(folder: Path, who: Mapping) -> Checkpoint | None:
-    """The checkpoint in `folder`, None if there is none. Raises FolderError for one that belongs to something
-    else, ArchiveError for one that cannot be read.
-    """
+    """The checkpoint in `folder`, or None. FolderError for another's, ArchiveError for a damaged one."""
     path = folder / CHECKPOINT
     if not path.exists():
         return None
@@ -157,9 +151,7 @@ def read(folder: Path, who: Mapping) -> Checkpoint | None:
 
 
 def is_finished(folder: Path, scene: Scene, model: str) -> bool:
-    """Whether the folder holds the result of this scene and model, and no newer solve of it was
-    interrupted.
-    """
+    """Whether the folder holds this result, and no newer solve of it was interrupted."""
     if not (folder / SUMMARY).exists() or (folder / MEMBERS).exists():
         return False
     summary = read_summary(folder)

@@ -38,10 +38,7 @@ PACKAGES = {
     FEM_LINE: ("numpy", "scipy", "scikit-fem"),
 }
 OF_CASES = ("sam", "fem_reference", "verification", "samfem")
-NOT_OF_CASES = (
-    *("verification/suite", "verification/scenes"),
-    "verification/runs/code_version.py",
-)
+NOT_OF_CASES = (*("verification/suite", "verification/scenes"), "verification/runs/code_version.py")
 """What decides the outcome of a verification case, but for what only words it: rows are judged anew from
 stored numbers, scenes and case files count by what a case reads of them.
 """
@@ -62,9 +59,7 @@ def version_of_cases(root: Path = ROOT) -> str:
 
 
 def unchanged(model: str = "") -> bool:
-    """Whether the files of a model, or of the cases, are those that were read first, so that what ran is what
-    they say.
-    """
+    """Whether the files of a model, or of the cases, are those that were read first."""
     if model:
         return code_version.__wrapped__(model) == code_version(model)
     return version_of_cases.__wrapped__() == version_of_cases()

@@ -83,9 +83,7 @@ class Uncertainty(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Run:
-    """A result read back. summary: as in summary.json; tables: name -> table of floats (NaN: empty) and
-    texts.
-    """
+    """A result read back. summary: of summary.json; tables: name -> floats (NaN: empty) and texts."""
 
     folder: Path | None
     summary: Mapping
@@ -205,9 +203,7 @@ def run_of(result: Result, scene: Scene) -> Run:
 
 
 def of_last_load(run: Run) -> Run:
-    """The run with the last load that was reached in the place of its peak, to be drawn; the same if the peak
-    was reached.
-    """
+    """The run with the last load reached in place of its peak, to be drawn; the same if that was reached."""
     if not run.last_fitting:
         return run
     tables = {
@@ -217,9 +213,7 @@ def of_last_load(run: Run) -> Run:
 
 
 def read_summary(folder: Path) -> dict:
-    """summary.json of the result in `folder`. Raises FolderError if there is none, or none that this version
-    wrote.
-    """
+    """summary.json of the result in `folder`. FolderError if none, or of another version."""
     try:
         with open_file(folder / SUMMARY) as stream:
             summary = json.loads(stream.read())
@@ -244,9 +238,7 @@ def _why(error: Exception) -> str:
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
-    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
-    run; also: names that it may hold besides the files of a run.
-    """
+    """Raise FolderError unless a run may be written to `folder`; also: names that it may hold besides."""
     try:
         check_place(folder)
         if (folder / SUMMARY).exists():
@@ -293,9 +285,7 @@ def figures_of(folder: Path) -> list[Path]:
 
 
 def clear_run(folder: Path, *, figures: bool = True) -> None:
-    """Remove the files of an older run, summary.json first, and its figures; a checkpoint and other files
-    stay.
-    """
+    """Remove the files of an older run, summary.json first, and its figures; a checkpoint stays."""
     (folder / SUMMARY).unlink(missing_ok=True)
     drawn = figures_of(folder) if figures else []
     for entry in [*folder.iterdir(), *drawn]:
@@ -313,9 +303,7 @@ def _of_a_run(name: str) -> bool:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A temporary path in the folder of `path`; renamed to it, after a sync to disk, only if the block
-    succeeds.
-    """
+    """A temporary path beside `path`; synced and renamed to it only if the block succeeds."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}{_TEMPORARY}")
     try:
         yield temporary
@@ -368,9 +356,7 @@ def _tables(result: Result) -> dict[str, Table]:
 
 
 def _table_text(name: str, table: Table, outside: float | None) -> str:
-    """A table in the column order of TABLES, with the a/R of a contact outside of the model as the last one.
-    Raises ValueError for other columns or unequal lengths.
-    """
+    """A table in the order of TABLES, with a/R outside of the model last. ValueError for other columns."""
     columns = TABLES[name] + tuple(extra for extra in EXTRA_COLUMNS.get(name, ()) if extra in table)
     if set(table) != set(columns):
         raise ValueError(f"table {name} has the columns {sorted(table)}, not {sorted(columns)}")

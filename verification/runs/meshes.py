@@ -53,11 +53,7 @@ def is_mesh(name: str) -> bool:
 
 
 def mesh_files(result: Result, cycles: int, outside: float | None = None) -> dict[str, bytes]:
-    """Name of a file -> its content: the parts of each state, and their list over cycles, from 0; none
-    without VTK.
-
-    outside: a/R of a contact outside of the model, which each mesh says.
-    """
+    """Name of a file -> content: parts of states, their list over cycles; none without VTK. outside: a/R."""
     files: dict[str, bytes] = {}
     entries = []
     for state, part, fields in _parts(result) if _has_vtk() else ():
@@ -130,9 +126,7 @@ def mesh_file(fields: FieldMesh | GridFields, outside: float | None = None) -> b
 
 
 def read_mesh(path: Path, step: int = 0) -> tuple[int, Any]:
-    """The number of load steps in a file, and the mesh at one of them, from 1, else the last, as pyvista
-    holds it: a rectilinear grid, or else an unstructured one. Raises InputError.
-    """
+    """Number of load steps in a file, and the mesh at one, from 1, else the last, of pyvista. InputError."""
     need("reading a mesh")
     if path.suffix.lower() not in READABLE:
         raise InputError(f"its name ends in none of {', '.join(READABLE)}")

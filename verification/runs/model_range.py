@@ -65,7 +65,6 @@ def measured() -> dict[tuple[str, float], dict[str, np.ndarray]]:
 
 def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, float]]:
     """Quantity -> relative error of the flat half-space of small strains, and its uncertainty, on a sphere.
-
     ratio: a/R; beyond what was measured, of it and of Poisson's ratio, the nearest counts.
     """
     own = {nu: columns for (name, nu), columns in sorted(measured().items()) if name == law}
@@ -80,9 +79,7 @@ def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, flo
 
 
 def refusal(scene: Scene) -> str:
-    """Why a scene is not solved: key, value and what is allowed; empty where the model holds or is asked
-    for.
-    """
+    """Why a scene is not solved: key, value and what is allowed; empty where the model holds."""
     if scene.solver.beyond_model or (key := _load_key(scene)) is None:
         return ""
     load = getattr(scene.loading, key)
@@ -98,9 +95,7 @@ def refusal(scene: Scene) -> str:
 
 
 def with_range(scene: Scene, result: Result) -> Result:
-    """The result with what is said about the range of its model; of a contact beyond it, that the scene does
-    not ask for, with the status outside-of-model.
-    """
+    """The result with what is said of its model's range; beyond it, unasked, outside-of-model."""
     found = model_range(scene, result)
     if found is None:
         return result
@@ -113,11 +108,10 @@ def with_range(scene: Scene, result: Result) -> Result:
 
 def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | None:
     """By how much the model is off, of the estimated contact or of the one that was solved; None where
-    nothing is known, as below the flat end of a punch on an elastic body.
-
-    a_over_R: of the sphere that the contact is likened to; like: by what, empty for a sphere; law, poisson,
-    measured_to: of the measurement; quantities: name -> error, uncertainty; outside: whether the model ends
-    before; lost_height: the largest worn depth over the height of the relief, where there is wear.
+    nothing is known, as below the flat end of a punch on an elastic body. a_over_R: of the sphere that the
+    contact is likened to; like: by what, empty for a sphere; law, poisson, measured_to: of the measurement;
+    quantities: name -> error, uncertainty; outside: whether the model ends before; lost_height: the largest
+    worn depth over the height of the relief, where there is wear.
     """
     values = {} if result is None else result.last_fitting or result.quantities
     likes = list(_likes(scene, result, values))
@@ -277,9 +271,7 @@ def _ratio(scene: Scene, load: float) -> float:
 
 
 def _ratio_of_edge(scene: Scene, load: float) -> float:
-    """The same of a punch with a rounded edge: the integrals of Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with
-    cos t = b/a.
-    """
+    """The same of a rounded punch: Sneddon, Int. J. Eng. Sci. 3 (1965) 47, with cos t = b/a."""
     other, plasticity, modulus = scene.counterbody, scene.body.plasticity, contact_modulus(scene)
     flat, edge, by_force = other.flat_radius, other.radius, scene.loading.approach is None
 
@@ -325,10 +317,9 @@ def contact_modulus(scene: Scene) -> float:
 
 @cache
 def _hertz(rx: float, ry: float) -> tuple[float, float, float]:
-    """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2.
-
-    With w = 1/sqrt(cos^2 + k^2 sin^2), k = b/a, and means over a quarter of a circle: Rx/Ry = <cos^2 w>/(k^2
-    <sin^2 w>), a^3 = 3/2 Rx <sin^2 w> F/E*, approach = 3/4 <w> F/(E* a): Johnson (1985), section 4.2.
+    """Semi-axes a along x, b along y and approach in m of an ellipsoid by Hertz under F/E* = 1 m^2. With w =
+    1/sqrt(cos^2 + k^2 sin^2), k = b/a, and means over a quarter of a circle: Rx/Ry = <cos^2 w>/(k^2 <sin^2
+    w>), a^3 = 3/2 Rx <sin^2 w> F/E*, approach = 3/4 <w> F/(E* a): Johnson (1985), section 4.2.
     """
     if ry > rx:
         b, a, approach = _hertz(ry, rx)
@@ -397,9 +388,7 @@ def _hardening(plasticity: Plasticity) -> str:
 
 
 def rms_slope(scene: Scene) -> float:
-    """rms slope of the patch, of both surfaces together, before a solve; of a counter-body that moves that of
-    the body alone. 0 where only the digest of a file is at hand.
-    """
+    """rms slope of the patch, both surfaces, before a solve; 0 where only the digest is at hand."""
     (nx, ny), extent = scene.patch
     hx, hy = extent[0] / nx, extent[1] / ny
     x, y = ((np.arange(n) - (n - 1) / 2) * h for n, h in ((nx, hx), (ny, hy)))

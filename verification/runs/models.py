@@ -28,9 +28,7 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene and its contact is within
-    the range of every model, or asked for beyond it.
-    """
+    """Raise ModelError, which names the key, unless `model` can represent the scene within its range."""
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
     from verification.runs.model_range import refusal  # noqa: PLC0415 - loads numpy
@@ -46,10 +44,7 @@ def models_for(scene: Scene) -> tuple[str, ...]:
 
 
 def cheapest_reference(scene: Scene) -> str:
-    """The cheapest finite-element model that can represent the scene.
-
-    Raises ModelError with the reasons of every model that cannot, and the keys to change, if none can.
-    """
+    """The cheapest finite-element model for the scene. ModelError with all reasons if none can."""
     reasons = {model: _refusal(scene, model) for model in models_for(scene)}
     for model, reason in reasons.items():
         if model != SAM and not reason:
@@ -84,11 +79,10 @@ def solve(
     made: Any = None,
 ) -> Result:
     """The result of `model`, with by how much small strains of a flat half-space are off; its cost completed
-    by cpu_s and peak_memory_bytes (of this process so far).
-
-    checkpoint, start: see the solvers; the times of a solve in parts add up, and its memory is that of the
-    largest part; made: the plan of the scene where it was checked and planned already, which then is not done
-    again. Raises ModelError for a scene that the model cannot represent.
+    by cpu_s and peak_memory_bytes (of this process so far). checkpoint, start: see the solvers; the times of
+    a solve in parts add up, and its memory is that of the largest part; made: the plan of the scene where it
+    was checked and planned already, which then is not done again. Raises ModelError for a scene that the
+    model cannot represent.
     """
     if made is None:
         check(scene, model)
@@ -114,9 +108,7 @@ def _package(model: str) -> ModuleType:
 
 
 def peak_memory() -> int:
-    """Largest memory of this process in bytes. ru_maxrss of Linux begins with that of the process that
-    started it.
-    """
+    """Largest memory of this process in bytes. ru_maxrss begins with that of its parent on Linux."""
     try:
         with open("/proc/self/status", encoding="ascii") as status:
             return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM:"))

@@ -23,9 +23,7 @@ GROUP_LIMITS = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/m
 
 
 def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()) -> dict:
-    """Provenance as a mapping that JSON can hold. inputs: name of an input -> its content, kept as
-    SHA-256.
-    """
+    """Provenance that JSON can hold. inputs: name of an input -> its content, kept as SHA-256."""
     return {
         "time_utc": datetime.now(UTC).isoformat(timespec="seconds"),
         "versions": {"python": platform.python_version()} | {name: installed(name) for name in PACKAGES},
@@ -38,9 +36,7 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
 
 
 def hashes(inputs: Mapping[str, bytes]) -> dict[str, str]:
-    """Name of each input as text (its bytes as UTF-8, whatever the language of the machine) -> SHA-256 of its
-    content.
-    """
+    """Name of each input as text, in whatever language of the machine -> SHA-256 of its content."""
     return {
         name.encode(errors="surrogateescape").decode(errors="replace"): hashlib.sha256(content).hexdigest()
         for name, content in inputs.items()
@@ -64,9 +60,7 @@ def installed(package: str) -> str | None:
 
 
 def _commit(root: Path) -> dict[str, Any]:
-    """Commit, and whether files differ from it, if `root` is the top of a git checkout; None where there is
-    none.
-    """
+    """Commit, and whether files differ from it, if `root` is the top of a git checkout; else None."""
     if not (root / ".git").exists():
         return {"commit": None, "dirty": None}
     status = _git(root, "status", "--porcelain", "--", ".", ":!reports")  # what it writes is no code

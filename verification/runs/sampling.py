@@ -135,9 +135,7 @@ def means_of_cells(x: np.ndarray, y: np.ndarray, p: np.ndarray, edges: np.ndarra
 
 
 def means_of_line(r: np.ndarray, p: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Ring means of p linear between the radii r (n,), ascending: (n_edges - 1,). Exact: p r is quadratic
-    (Simpson).
-    """
+    """Ring means of p linear between radii r (n,), ascending: (n_edges - 1,), exact (Simpson)."""
     knots = np.union1d(r[r < edges[-1]], edges)
     middle = (knots[1:] + knots[:-1]) / 2.0
     ends, inner = (np.interp(at, r, p) * at for at in (knots, middle))

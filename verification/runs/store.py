@@ -42,9 +42,7 @@ _WRITING = threading.Lock()
 
 @dataclass(frozen=True)
 class Lookup:
-    """What a lookup found. result: None if nothing usable; note: "" or why an entry is not used ("stale:
-    ..."); created (UTC, ISO 8601) and commit of what was found.
-    """
+    """What a lookup found. result: or None; note: why it is not used ("stale: ..."); created, commit."""
 
     result: Any = None
     note: str = ""
@@ -54,9 +52,7 @@ class Lookup:
 
 @dataclass(frozen=True)
 class Reuse:
-    """Where a result comes from. reused: from the store; created, commit: of its own computation; note: see
-    Lookup.
-    """
+    """Where a result is from. reused: from the store; created, commit: when computed; note: see Lookup."""
 
     reused: bool
     created: str = ""
@@ -78,9 +74,7 @@ class Reuse:
 
 @dataclass(frozen=True)
 class Entry:
-    """A file of the store, for the list. what: model of a result, or name and level of a case; size in
-    bytes.
-    """
+    """A file of the store, for the list. what: model, or name and level of a case; size in bytes."""
 
     path: Path
     kind: str
@@ -101,9 +95,7 @@ class Entry:
 
 
 class Store:
-    """The entries in a folder, which is made when the first one is kept. Any number of processes may share
-    it.
-    """
+    """The entries in a folder, made when the first is kept. Any number of processes may share it."""
 
     def __init__(self, folder: Path):
         self.folder = Path(folder)
@@ -112,15 +104,11 @@ class Store:
             code_version(model)
 
     def lookup(self, scene: Scene, model: str, kind: str = RESULT) -> Lookup:
-        """The result of a scene, if it is there and of this version; UNCONVERGED: one that did not
-        converge.
-        """
+        """The result of a scene, if there and of this version; UNCONVERGED: one that did not converge."""
         return self.find(identity(scene, model) | {"kind": kind}, code_version(model), Result)
 
     def keep(self, scene: Scene, model: str, result: Result, *, unconverged: bool = False) -> None:
-        """Keep a result, unless the files of the code changed while it was computed; one that did not
-        converge only where that is asked for, apart from the others.
-        """
+        """Keep a result, unless the code changed meanwhile; unconverged ones if asked for, and apart."""
         if not (result.converged or unconverged):
             return
         if not unchanged(model=model):
@@ -185,9 +173,7 @@ class Store:
     def prune(
         self, chosen: Callable[[Entry], bool], *, coefficients: bool = False
     ) -> Iterator[tuple[str, int]]:
-        """Remove the chosen entries, what is left over and, if wanted, coefficients; (what, bytes) of each as
-        it goes. Raises OSError.
-        """
+        """Remove the chosen entries, left-overs and coefficients; (what, bytes) of each. Raises OSError."""
         for entry in self.entries():
             if chosen(entry):
                 entry.path.unlink(missing_ok=True)
@@ -208,9 +194,7 @@ class Store:
 
 
 def default_store() -> Store | None:
-    """The store of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME, else
-    ~/.cache/samfem.
-    """
+    """Of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME or ~/.cache/samfem."""
     named = os.environ.get(FOLDER)
     if named is not None:
         return Store(Path(named)) if named else None
@@ -244,9 +228,7 @@ def solve_or_reuse(
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
-    """The result of a scene from the store, or else solved and kept there, with the cost of its own solve.
-    fresh: solve in any case; how: to models.solve. Raises ModelError as models.solve does.
-    """
+    """The result of a scene from the store, or solved and kept. fresh: solve anyway; how: to models.solve."""
     found = Lookup() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:
         return found.result, Reuse(True, found.created, found.commit)
@@ -257,9 +239,7 @@ def solve_or_reuse(
 
 
 def identity(scene: Scene, model: str) -> dict:
-    """What a result depends on besides the code: the model and the scene with every default, but neither
-    title nor [compare].
-    """
+    """What a result depends on but the code: model and scene with every default, no title or [compare]."""
     content = solved_part(resolved(scene))
     content.pop("title", None)
     return {"kind": RESULT, "model": model, "scene": content}
@@ -286,9 +266,7 @@ def _is_running(process: str) -> bool:
 
 
 def now() -> dict[str, str]:
-    """created and commit (of when the process first asked), the latter with a plus where files differ from
-    it.
-    """
+    """created and commit (when first asked), the latter with a plus where files differ from it."""
     return {"created": datetime.now(UTC).isoformat(timespec="seconds"), "commit": _commit()}
 
 

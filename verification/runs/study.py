@@ -186,9 +186,7 @@ class Axis(Section):
         return self.at(drawn(key, seed, self.count))
 
     def at(self, shares: Sequence[Decimal]) -> Sequence:
-        """Values at shares (0 to 1) of the way from first to last, as a scene file spells them; those between
-        two ends in the unit of the first, rounded to 15 digits.
-        """
+        """Values at shares (0 to 1) from first to last, as a scene file spells them, to 15 digits."""
         if self.list:
             return [self.list[min(int(share * self.size), self.size - 1)] for share in shares]
         ends = self.ends(self.kind)
@@ -237,9 +235,7 @@ _NO_DESIGN = 'with mode = "morris", "sobol" or "uniform" only: remove it'
 
 
 def _axes(value: object) -> dict:
-    """The table [vary], each key in one piece: "loading.force" = {...} and loading.force = {...} mean the
-    same.
-    """
+    """The table [vary], keys in one piece: "loading.force" = {...} and loading.force = {...} are one."""
     if not isinstance(value, Mapping) or not value:
         raise refused(
             'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
@@ -368,9 +364,7 @@ def _of_mode(axis: Mapping, designed: bool) -> Iterator[Conflict]:
 
 @dataclass(frozen=True)
 class StudyPoint:
-    """One scene of a study. values: as the scene file spells them; scene: None if it is refused, for the
-    `reason`.
-    """
+    """A scene of a study. values: as its file spells them; scene: None if refused, for the `reason`."""
 
     index: int
     values: tuple
@@ -393,9 +387,7 @@ class Points:
 
 
 def read_study(path: str | Path) -> Points:
-    """The study in a TOML file. Raises SceneError, with every problem of the file, or if every scene is
-    refused.
-    """
+    """The study in a TOML file. SceneError with all its problems, or if every scene is refused."""
     path = Path(path)
     try:
         content = read_limited(path)

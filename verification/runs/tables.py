@@ -44,10 +44,7 @@ def columns_text(table: Mapping[str, Sequence[Any] | np.ndarray]) -> str:
 
 
 def read_table(content: bytes) -> DataFrame:
-    """The table in the bytes of a CSV file: floats (NaN: an empty cell), texts in the columns TEXT_COLUMNS.
-
-    Raises ValueError, which says what is wrong, for bytes that are no such table.
-    """
+    """The table in a CSV file: floats (NaN: an empty cell), texts in TEXT_COLUMNS. Raises ValueError."""
     import pandas as pd
 
     kinds: defaultdict[str, type] = defaultdict(lambda: float, dict.fromkeys(TEXT_COLUMNS, str))
@@ -61,9 +58,7 @@ def read_table(content: bytes) -> DataFrame:
 
 
 def read_any_table(content: bytes) -> DataFrame:
-    """The table in the bytes of a CSV file of a comparison or a sweep: columns of numbers, truths or texts,
-    as it reads. Raises ValueError for bytes that are no table.
-    """
+    """The table of a comparison or a sweep: numbers, truths or texts. ValueError for no table."""
     import pandas as pd
 
     return pd.read_csv(io.BytesIO(content), keep_default_na=False, na_values=[""])

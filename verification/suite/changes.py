@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What changed in the gates between two reports: their values one by one, gates that came or went,
-and whether each gate of the older one still stands, by a table that says where.
-"""
+"""What changed in the gates between two reports, and whether each gate of the older one still stands."""
 
 from __future__ import annotations
 
@@ -16,9 +14,7 @@ from verification.suite.verify import finished
 from verification.text.console import digits, print_table
 
 EQUAL, GROWN = 1e-12, 2.0
-"""Values count as equal within so much of the larger one; dimensionless ones, which may be rounding itself,
-also within it.
-"""
+"""Values count as equal within so much of the larger one; dimensionless ones also within it."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +29,8 @@ class Change:
 
 def changes(before: Mapping, after: Mapping, equal: float = EQUAL) -> list[Change]:
     """Gates of two reports (the contents of their results.json) that differ in value, in the order of the
-    second one.
-
-    The error stands for the value of a field, which has none. What both reports did not run is left out.
+    second one. The error stands for the value of a field, which has none. What both reports did not run is
+    left out.
     """
     old, new = ({gate["id"]: gate for gate in report["gates"]} for report in (before, after))
     found = []

@@ -44,9 +44,7 @@ def costs_at(level: str) -> dict[str, Cost]:
 
 @dataclass
 class Forecast:
-    """Of cases that run one after the other. needs: by name, in that order; took: seconds of those that
-    ended; began: when the one that runs did.
-    """
+    """Cases one after the other. needs: by name, in order; took: seconds; began: when one did."""
 
     needs: Mapping[str, Cost]
     stored: int = 0

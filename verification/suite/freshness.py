@@ -24,10 +24,7 @@ JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
 
 
 def stale(results: Mapping) -> dict[str, str]:
-    """Name of each case that has to be published again -> why. results: as verify and publish write them.
-
-    Those that are not published count too, unless something that they need is missing here.
-    """
+    """Name of each case that must be published again -> why; also unpublished ones that can run here."""
     known, ran = all_cases(), ran_in(results)
     gone = {name: "there is no such case any more" for name in ran if name not in known}
     asked = [case for case in known.values() if case.name in ran or case.published_at(results["level"])]
@@ -36,10 +33,7 @@ def stale(results: Mapping) -> dict[str, str]:
 
 
 def older(results: Mapping) -> dict[str, str]:
-    """Of these only the cases that came to their end: what the pages show of them is not of this code.
-
-    A comparison has none.
-    """
+    """Of these only cases that came to their end, shown of other code; none of a comparison."""
     if results.get("kind") == "comparison":
         return {}
     ended = {name for name, case in ran_in(results).items() if not case["failure"]}
@@ -112,9 +106,7 @@ class Earlier:
 
 
 def earlier(results: Record, known: Iterable[str], wanted: Iterable[str]) -> Earlier:
-    """What stays of a report: the cases that are known and not wanted, and of those wanted what
-    came to its end with this code, judged anew where only its gates have changed.
-    """
+    """What stays of a report: known cases not wanted, and wanted ones of this code, judged anew."""
     again, cases = set(wanted), dict[str, Record]()
     gates: list[Record] = []
     for name, case in ran_in(results).items():

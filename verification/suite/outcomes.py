@@ -23,9 +23,7 @@ PACKED = 4_000  # bytes of a table: packing those beyond saves 1.4 of the 1.9 MB
 
 @dataclass(frozen=True)
 class Kept:
-    """What is stored of a case. files: name in the folder of the report -> content; inputs,
-    sources: see Context; seconds: that the case took.
-    """
+    """What is stored of a case. files: name in the folder -> content; inputs, sources: see Context."""
 
     outcome: Outcome
     inputs: dict[str, bytes]
@@ -35,9 +33,7 @@ class Kept:
 
 
 def find(store: Store, case: Case, context: Context) -> Lookup:
-    """The outcome of a case at the level of the context, if it is there, of this version and of the
-    same scenes.
-    """
+    """The outcome of a case at this level, if it is there, of this version and the same scenes."""
     found = store.find(_identity(case, context.level), version_of_cases(), Kept)
     inputs = found.result.inputs if found.result else {}
     changed = [name for name, content in inputs.items() if present(name) != content]
@@ -52,9 +48,7 @@ def is_kept(store: Store, case: Case, level: str) -> bool:
 
 
 def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome:
-    """Write the files of a case into the folder of the report again, a run's summary last, or only
-    its figures, and fill the context.
-    """
+    """Write the files of a case again, a run's summary last, or only its figures; fill the context."""
     drawn = {name for figure in kept.outcome.figures for name in figure.files}
     files = [(name, content) for name, content in kept.files.items() if with_runs or name in drawn]
     for name, content in sorted(files, key=lambda item: item[0].endswith(SUMMARY)):
@@ -68,10 +62,7 @@ def put_back(kept: Kept, context: Context, *, with_runs: bool = True) -> Outcome
 
 
 def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, seconds: float) -> None:
-    """Keep what a case found, unless the files of the code changed meanwhile.
-
-    Raises ValueError where it names an input that is no file of the scenes: it would never be found again.
-    """
+    """Keep what a case found, unless code changed. ValueError for an input that is no file of the scenes."""
     if foreign := [name for name in context.inputs if present(name) is None]:
         raise ValueError(f"case {case.name} names as input what is no file of the scenes: {foreign}")
     if not unchanged():

@@ -30,9 +30,7 @@ WIDTH = 118
 
 
 def renewed(text: str, results: Mapping) -> str:
-    """The text with the numbers of the results. Raises ValueError for a gate that did not pass, and
-    for a text with a mark too many or too few.
-    """
+    """The text with the numbers of the results. ValueError for a gate that failed or a wrong mark."""
     gates = {gate["id"]: gate for gate in results["gates"]}
     marks = text.count(BEGIN), text.count(END)
     if marks not in ((0, 0), (1, 1)):

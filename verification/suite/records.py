@@ -37,9 +37,7 @@ def gates_csv(gates: Sequence[Mapping]) -> str:
 
 
 def junit_xml(cases: Sequence[Mapping], gates: Sequence[Mapping], name: str = "samfem verify") -> bytes:
-    """One testsuite a case, one testcase a gate, one for the case itself when it broke off, and one
-    for its figures when they cannot be read.
-    """
+    """A testsuite a case, a testcase a gate, and one each for a case or figures that broke."""
     root = ElementTree.Element("testsuites", name=name)
     for case in cases:
         own = [gate for gate in gates if gate["case"] == case["name"]]

@@ -53,9 +53,7 @@ SHARE = 0.02
 
 @dataclass(frozen=True)
 class RanCase:
-    """A case that was run or reused. failure: why it broke off, or empty; seconds: of its own run;
-    source: where it is from, or why it was not taken from the store.
-    """
+    """A case that was run or reused. failure: why it broke off; source: where it is from, or why not."""
 
     context: Context
     outcome: Outcome
@@ -66,12 +64,11 @@ class RanCase:
 
 def main(cases: list[str], level: str, out: Path, *, store: Store | None = None) -> int:
     """Run the named cases (none: all of the level), or take them from the store, and write the report into
-    `out`. A name that ends with .toml is a file of own cases, which then are all that there are.
-
-    Returns 0 when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an
-    unknown case or a folder that holds something else (nothing is written then). An earlier report
-    in `out` is replaced when the new one is whole. A case that needs what is not there is not run, with the
-    reason; if that is so for all, nothing is written.
+    `out`. A name that ends with .toml is a file of own cases, which then are all that there are. Returns 0
+    when every gate of every case that ran held and its figures can be read, 1 when not, 2 for an unknown case
+    or a folder that holds something else (nothing is written then). An earlier report in `out` is replaced
+    when the new one is whole. A case that needs what is not there is not run, with the reason; if that is so
+    for all, nothing is written.
     """
     files = [each for name in cases if name.endswith(".toml") for each in read_cases(Path(name))]
     known = {file.name: case_of(file) for file in files} or all_cases()
@@ -104,10 +101,8 @@ def finish(
     stays: Earlier = NOTHING,
 ) -> int:
     """Judge the cases that ran, whose files are in UNFINISHED, put the report of them into the place of the
-    earlier one and say what is red.
-
-    known: all cases by name; unmet: name -> why a case could not run here; stays: of the earlier
-    report. Returns 0 when every gate of every case that ran held, else 1.
+    earlier one and say what is red. known: all cases by name; unmet: name -> why a case could not run here;
+    stays: of the earlier report. Returns 0 when every gate of every case that ran held, else 1.
     """
     results = _judged(ran, known, level=level, command=command, unmet=unmet, stays=stays)
     _write(results, out / UNFINISHED, older(results) if stays.cases else {}, place=out)
@@ -180,9 +175,7 @@ def stored(folder: Path) -> dict | None:
 
 
 def begin(out: Path) -> Path:
-    """UNFINISHED in `out`, for a report in the making. What a killed run left there is removed; where that is
-    a whole report, it first takes its place.
-    """
+    """UNFINISHED in `out`, for a report in the making; a whole one left there takes its place first."""
     new = out / UNFINISHED
     if (stored(new) or {}).get("complete"):
         _take_over(out)
@@ -193,9 +186,7 @@ def begin(out: Path) -> Path:
 
 
 def _take_over(out: Path) -> None:
-    """Put the whole report in UNFINISHED into the place of an earlier one, results.json last. Broken off, it
-    goes on when it is called again.
-    """
+    """Put the whole report in UNFINISHED into its place, results.json last; goes on if broken off."""
     if (out / RESULTS).exists():
         remove_pages(out)
         for name in ("runs", "figures"):
@@ -216,9 +207,7 @@ def before(folder: Path) -> dict:
 def _run(
     chosen: Sequence[Case], known: Mapping[str, Case], *, out: Path, store: Store | None, **asked: Any
 ) -> dict[str, RanCase]:
-    """Run the cases one after the other, with a line of each as it ends and pages of those that have ended; a
-    case that breaks off does not stop the others. asked: as for `_judged`.
-    """
+    """Run the cases one after the other, with a line and pages as each ends. asked: as for `_judged`."""
     ran: dict[str, RanCase] = {}
     new, count, rows, due = out / UNFINISHED, len(chosen), _rows(known), 0.0
     ahead = forecast(chosen, asked["level"], store)
@@ -312,9 +301,7 @@ def _judged(
 
 
 def _run_or_reuse(case: Case, context: Context) -> RanCase:
-    """A case from the store, or else run and kept there, unless it measures times. What makes an
-    entry unusable is said on stderr if it is damage.
-    """
+    """A case from the store, or run and kept there, unless it measures times. Damage is said on stderr."""
     started, kept = time.perf_counter(), None if case.alone else context.store
     found = outcomes.find(kept, case, context) if kept else Lookup()
     if found.result is not None:
@@ -346,9 +333,7 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why; any error of a case is its own and is reported
-    with it, but for a full disk. What was found before a figure failed counts.
-    """
+    """The outcome and, when the case broke off, why: any error but a full disk, with what was found."""
     try:
         return case.run(context), ""
     except NotDrawnError as lost:
@@ -412,9 +397,7 @@ def _write_results(results: dict, out: Path) -> None:
 
 
 def show(what: str, names: Sequence[str]) -> int:
-    """On stdout, of the named cases (none: of all), one line each, or where `what` is "gates"
-    question, gates, tolerances and reasons. Returns 0, or 2 for an unknown name.
-    """
+    """A line for each named case (none: all), or its gates with reasons. 0, or 2 for an unknown name."""
     known, gates, rows = all_cases(), load_rows(), []
     if problem := unknown_cases(names, known):
         print(f"samfem: error: {problem}", file=sys.stderr)
@@ -451,9 +434,8 @@ def _limit(gate: Row) -> str:
 
 
 def draw_pdf(folder: Path, progress: Told, store: Store | None) -> list[Path]:
-    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths.
-
-    A result that is not in the store is solved again. Raises FolderError when the folder holds no finished
+    """Write figures/<case>-<name>.pdf of every case of a report that has figures, and return the paths. A
+    result that is not in the store is solved again. Raises FolderError when the folder holds no finished
     report.
     """
     results, known, written = finished(folder), all_cases(), []

@@ -23,17 +23,13 @@ NOTEBOOK_EVERY_S = 0.2
 
 
 def print_anything(stream: TextIO) -> None:
-    """Let a stream take every text, whatever its encoding: see `_bytes_or_marks`. In the C locale µ would be
-    an error.
-    """
+    """Let a stream take every text, see `_bytes_or_marks`. In the C locale µ would be an error."""
     if hasattr(stream, "reconfigure") and stream.errors in ("strict", "surrogateescape"):
         stream.reconfigure(errors=_ANYTHING)
 
 
 def _bytes_or_marks(error: UnicodeEncodeError) -> tuple[bytes, int]:
-    """In place of what an encoding does not have: the bytes of a file's name as they are, else question
-    marks.
-    """
+    """For what an encoding lacks: the bytes of a file's name as they are, else question marks."""
     text = error.object[error.start : error.end]
     if all("\udc80" <= letter <= "\udcff" for letter in text):
         return text.encode("ascii", "surrogateescape"), error.end
@@ -45,9 +41,7 @@ codecs.register_error(_ANYTHING, _bytes_or_marks)
 
 
 class Cleaned:
-    """A text stream on which what could act on a terminal becomes question marks: a key, a column or the name
-    of a file may hold such characters. What rich draws goes to `uncleaned`.
-    """
+    """A text stream without what acts on a terminal, as question marks. rich draws to `uncleaned`."""
 
     def __init__(self, stream: TextIO) -> None:
         self.uncleaned = stream
@@ -87,11 +81,7 @@ def in_notebook() -> bool:
 
 
 class Progress:
-    """The `progress` callable of the solvers: a bar on a terminal and in a notebook, plain lines elsewhere. A
-    context manager.
-
-    remaining: plain lines too say how long the stage will take.
-    """
+    """The `progress` of the solvers: a bar, or plain lines, with `remaining` time. A context manager."""
 
     def __init__(self, remaining: bool = False):
         self._bar: Any = None

@@ -15,15 +15,11 @@ WORKING_UNITS = {
     "m3": {"mm^3": 1e-9, "um^3": 1e-18},
     "N": {"N": 1.0},
 }
-"""SI unit at the end of the name of a quantity -> units for a person, the largest first, and what each is in
-SI; a value takes the first of which it has a tenth.
-"""
+"""SI unit at the end of a name -> units for a person and their SI value; the first with a tenth counts."""
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
-    """A value in an SI unit (or in bytes, "B") with the prefix that leaves 1 to 999 before it: 1.2e13 B is
-    "12 TB".
-    """
+    """A value in an SI unit (or bytes, "B") with a prefix that leaves 1 to 999: 1.2e13 B is "12 TB"."""
     if not math.isfinite(value) or value == 0:
         return f"{value:g} {unit}"
     rounded = float(f"{value:.{digits - 1}e}")
@@ -34,10 +30,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
 
 
 def in_working_unit(name: str, value: float, digits: int = 6, beside: float | None = None) -> tuple[str, str]:
-    """A quantity in a unit of the contact, of GPa, um and N: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa").
-
-    beside: the value whose unit it takes, in place of its own.
-    """
+    """A quantity in a working unit: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa"). beside: has the unit."""
     words, _, si = name.rpartition("_")
     units = WORKING_UNITS.get(si)
     if units is None:

@@ -25,10 +25,9 @@ ORDERS = (1e-3, 12.0)  # between which an order is looked for
 
 
 def bound(values: Sequence[float], sizes: Sequence[float], order: float, factor: float = FACTOR) -> float:
-    """Largest distance of the first value from the limit of zero size, in the unit of the values.
-
-    values, sizes: (n,), n >= 2, that of the result first; sizes positive, all different from the first;
-    order: with which the error falls, formally. ValueError otherwise.
+    """Largest distance of the first value from the limit of zero size, in the unit of the values. values,
+    sizes: (n,), n >= 2, that of the result first; sizes positive, all different from the first; order: with
+    which the error falls, formally. ValueError otherwise.
     """
     if len(values) != len(sizes) or len(values) < 2 or min(sizes) <= 0.0 or sizes[0] in sizes[1:]:
         raise ValueError(f"values and sizes: two or more, sizes positive, other than the first: {sizes}")
@@ -38,9 +37,7 @@ def bound(values: Sequence[float], sizes: Sequence[float], order: float, factor:
 
 
 def of_edge(value: float, cells: float, share: float = EDGE) -> float:
-    """What the edge of a contact, which falls anywhere between the cells, leaves of a value of second order,
-    in its unit; cells: in the contact radius; share: of the value with one cell.
-    """
+    """What the edge of a contact leaves of a value, in its unit; cells: in the radius; share: with one."""
     return share * abs(value) / cells**2
 
 

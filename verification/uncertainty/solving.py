@@ -131,9 +131,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Family:
-    """The scenes that an uncertainty needs. cells: finest first; steps: on the coarsest of them, beginning
-    with it; box: beginning with the last of steps, or of cells; empty where history or box decide nothing.
-    """
+    """Scenes of an uncertainty. cells: finest first; steps: on the coarsest; box: on the last; or empty."""
 
     cells: tuple[Member, ...]
     steps: tuple[Member, ...] = ()
@@ -186,9 +184,7 @@ def _with_steps_and_box(cells: tuple[Member, ...], model: str) -> Family:
 
 
 def cells_to_edge(scene: Scene, fine: Result, family: Family) -> float:
-    """Cells of a result in the radius of its contact; infinite where no edge falls between cells: given
-    pressures, rough bodies, and finite elements of a bare elastic body, which have a node at the edge.
-    """
+    """Cells of a result in the radius of its contact; infinite where no edge falls between cells."""
     area = fine.quantities.get("contact_area_m2")
     if scene.counterbody is None or scene.patch_surface is not None or not area:
         return np.inf
@@ -354,9 +350,7 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
 
 @dataclass(frozen=True)
 class Solved:
-    """The results of a family: those of its cells, of its load steps, and of its boxes. edge: cells in the
-    radius of a contact whose edge falls between them, else infinite.
-    """
+    """Results of a family: cells, load steps, boxes. edge: cells in the radius if it falls between them."""
 
     family: Family
     cells: Sequence[Result]
@@ -382,10 +376,7 @@ class Solved:
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
-    """The result of a scene, with its uncertainty if the scene asks for one.
-
-    solver: of every scene, `models.solve` by default. Raises what that raises.
-    """
+    """The result of a scene, with its uncertainty if asked for. solver: `models.solve` by default."""
     how = solver or (lambda each, _: models.solve(each, model))
     return with_uncertainty(scene, model, how) if scene.solver.uncertainty else how(scene, "")
 
@@ -401,9 +392,8 @@ def asked_of(scene: Scene, source: str) -> Scene:
 
 
 def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
-    """The result of a scene, and of its coarser companions what they say about it.
-
-    The finest is solved first. Where it does not converge, or nothing can be said, the others are not solved.
+    """The result of a scene, and of its coarser companions what they say about it. The finest is solved
+    first. Where it does not converge, or nothing can be said, the others are not solved.
     """
     fine = solver(alone(scene), "the scene itself")
     if not fine.converged:
@@ -437,9 +427,7 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
 
 
 def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
-    """Why the coarsest grid of a family has too few cells in the radius of the contact or of a misfit sphere;
-    empty if it has enough, and of rough bodies, whose members say themselves whether spots are resolved.
-    """
+    """Why the coarsest grid of a family has too few cells in its radius; empty if enough, or rough."""
     if scene.patch_surface is not None:
         return ""
     if fine.model != models.SAM:
@@ -449,9 +437,7 @@ def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
 
 
 def too_coarse(found: Family, model: str, resolved: float) -> str:
-    """Why the coarsest grid of a family is under-resolved, and what to set; empty if it is not. resolved:
-    cells or elements of the finest in the contact radius.
-    """
+    """Why the coarsest grid of a family is under-resolved, or empty. resolved: cells of the finest."""
     finest, coarsest = found.cells[0], found.cells[-1]
     left = resolved * finest.size / coarsest.size
     if left >= LEAST_IN_RADIUS:
@@ -505,11 +491,9 @@ def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = N
 
 
 def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
-    """What the members say about a quantity.
-
-    u_cells, u_steps, u_box: bounds by each; u_num: their sum, as errors of one sign are usual, at least the
-    tolerance of the solvers. Bounds by steps and box are relative changes on the coarsest cells; that by
-    cells is at least what the edge of the contact leaves.
+    """What the members say about a quantity. u_cells, u_steps, u_box: bounds by each; u_num: their sum, as
+    errors of one sign are usual, at least the tolerance of the solvers. Bounds by steps and box are relative
+    changes on the coarsest cells; that by cells is at least what the edge of the contact leaves.
     """
     value = solved.cells[0].quantities[name]
     outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM

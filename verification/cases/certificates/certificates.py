@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Every condition of a solution, measured after the solve on what was returned, by `verification.checks`: of
-small scenes in groups, for each of which a row holds.
-"""
+"""Every condition of a returned solution, by `verification.checks`, of small scenes in groups."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from verification.cases.case import (
     FEM_3D,
     SAM,
     Context,
+    DataFrame,
     with_body,
     with_grid,
     with_loading,
@@ -24,17 +23,10 @@ from verification.cases.case import (
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.checks.certificates import OF_GROUP, solved
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-__all__ = ["frame", "worst"]
-
 LEVEL = {"quick": Resolution(8, 10), "full": Resolution(12, 20)}
 STEPS, RATIO, PERFECT_RATIO, COEFFICIENT = 5, 4.0, 3.0, 0.2
 FILM_RATIO, FILM_MESH = 2.5, 8
-"""Hertz's p0 over the initial yield stress of the body under the film that yields; elements in the contact
-radius.
-"""
+"""Hertz's p0 over the initial yield stress of the body under a film that yields; elements in the radius."""
 SPATIAL_MESH, SPATIAL_STEPS, COATED_CELLS = 4, 3, 41
 PATCH, RA, FORCE = 16e-6, 0.04e-6, 0.1
 """Of the rough patch: side and Ra in m, force in N."""
@@ -54,9 +46,7 @@ WAVES = {"cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8, "seed": 4}
 
 
 def rough(context: Context, model: str) -> dict[str, Scene]:
-    """A self-affine patch whose border falls off, under a map of friction; of SAM also elastic, or with a
-    film that fails.
-    """
+    """A self-affine patch that falls off at its border, under a map of friction; elastic, or with a film."""
     base, cells = context.scene("rough-asperities"), PATCH_CELLS[model]
     grid = Grid(cells=(cells, cells), extent=(PATCH, PATCH), border="relief")
     layered = grid.model_copy(update={"layers": LAYERS, "depth": 0.5 * LAYERS * PATCH / cells})
@@ -75,9 +65,7 @@ def rough(context: Context, model: str) -> dict[str, Scene]:
 
 
 def groups(context: Context) -> Iterator[tuple[str, str, str, Scene]]:
-    """(group, name, model, scene) of all that is solved: spheres, at rest and sliding; elastic films, and one
-    that yields with its body; rough patches.
-    """
+    """(group, name, model, scene) of all that is solved: spheres, elastic and yielding films, patches."""
     quick, friction = context.level == "quick", {"friction": Friction(coefficient=COEFFICIENT)}
 
     def pressed(name: str, ratio: float, steps: int) -> Scene:

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Near-perfect and perfect plasticity far beyond yield, in few load steps: both solvers finish, or say what
-stops them.
-"""
+"""Near-perfect and perfect plasticity far beyond yield, in few load steps, in both models."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from verification.cases.case import (
     FEM,
     SAM,
     Context,
+    DataFrame,
     with_body,
     with_grid,
     with_keys,
@@ -27,17 +26,10 @@ from verification.checks.certificates import curves_of
 from verification.checks.conditions import peak_rows
 from verification.references import contact_of
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-__all__ = ["apart"]
-
 MODELS = {"sam": SAM, "fem": FEM}
 SLOPES = {"perfect": 0.0, "nearly-perfect": 1e-4}  # of the yield curve over Young's modulus
 EXTENT = {6.2: (2.5, 3.3), 15.0: (5.5, 5.4)}
-"""p0/sigma_y0 -> half sides of the grid and its depth in elastic contact radii; the contact itself grows to
-1.1 and 1.9.
-"""
+"""p0/sigma_y0 -> half sides of the grid and depth in elastic radii; the contact grows to 1.1 and 1.9."""
 CELLS = {"quick": {6.2: (6, 6), 15.0: (4, 4)}, "full": {6.2: (8, 10), 15.0: (6, 8)}}
 """Of SAM and of FEM in the elastic contact radius."""
 TIGHT = 1e-9  # tolerance of the whole load at once: more than SAM iterates
@@ -46,9 +38,7 @@ TIGHT = 1e-9  # tolerance of the whole load at once: more than SAM iterates
 def scene_of(
     base: Scene, ratio: float, cells: tuple[int, int], *, slope: float = 0.0, steps: int = 15
 ) -> Scene:
-    """p0/sigma_y0 = ratio on these cells; layers are even down to 1.8 radii, then each thicker than the
-    last.
-    """
+    """p0/sigma_y0 = ratio on these cells; layers are even down to 1.8 radii, then ever thicker."""
     if slope:
         keys = {"law": "linear", "modulus": slope * base.body.young}
         base = with_body(base, plasticity=base.body.plasticity.model_copy(update=keys))
@@ -61,9 +51,7 @@ def scene_of(
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Both ratios with both models; and one step from nothing, which SAM cuts if it must. A peak that was not
-    reached has no numbers.
-    """
+    """Both ratios with both models; and one step from nothing. A peak that was not reached has no numbers."""
     base, solves = context.scene("plastic-perfect"), []
     for ratio, cells in CELLS[context.level].items():
         for law in SLOPES if context.level == "full" else ("perfect",):

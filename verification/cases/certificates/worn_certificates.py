@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The conditions of a returned solution in the last of 2 and 5 cycles of a body that wears, as in
-`certificates`.
-
-Material has been removed and what was below it has moved up, and the film is as new in each cycle: strains
-are counted from the start of the last cycle, heights from the worn surface.
+"""The conditions of a returned solution, as in `certificates`, in the last cycle of a body that wears:
+strains are counted from the start of that cycle, heights from the worn surface.
 """
 
 from __future__ import annotations
@@ -24,13 +21,9 @@ from verification.checks.certificates import late, solved
 from verification.checks.conditions import surface_of
 from verification.checks.material import around, fields_at_points
 
-__all__ = ["frame"]
-
 CYCLES = (2, 5)
 SEED, TOLERANCE = 1, 1e-6
-"""Of wear-converged: the surface that wears most; a rigid plane needs twice the load for as many cells in
-contact, and lets it yield deeper.
-"""
+"""Of wear-converged: the surface that wears most; under a rigid plane it needs twice the load."""
 DEEPER = 14e-6, 19e-6  # m: further faces of layers
 
 
@@ -77,9 +70,7 @@ def last_cycle(records: Sequence[Checkpoint]) -> tuple[Checkpoint, list[Checkpoi
 
 
 def lowered(result: Result) -> Result:
-    """The result with the heights of its surface less what was worn off, and its approach from the first
-    touch of that surface, as that of a result is from the first touch of the original one.
-    """
+    """The result with its heights less what was worn off, and its approach from the first touch of that."""
     data = result.fields.cell_data
     height = np.asarray(data["height_m"]) - np.asarray(data["worn_m"])
     cells = surface_of(result)[2].size  # of those of the plane y = 0 nothing is asked

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The tribofilm and the body under it beyond yield, and whether the film still changes pressure and stress by
-less than 5 %.
-
-Bosman & Schipper (2011), section 2, conclude so from an elastic calculation (Table 1, Fig. 3), and take a
-yield stress of the film of 0.67 GPa (section 4), which the pressure of that calculation passes many times.
-Semi-analytical models have one material; this is finite elements alone.
+"""The tribofilm and the body under it beyond yield, by finite elements, and whether the film still changes
+pressure and stress by less than 5 %. Bosman & Schipper (2011), section 2, conclude so from an elastic
+calculation (Table 1, Fig. 3), whose pressure passes the yield stress of the film, 0.67 GPa (section 4), many
+times.
 """
 
 from __future__ import annotations
@@ -26,12 +24,8 @@ from verification.reference.hertz import effective_modulus
 from verification.references import changes_by_film
 from verification.runs.sampling import peak
 
-__all__ = ["frame"]
-
 LEVEL = {"quick": (8, 5), "full": (12, 10)}
-"""Elements in the contact radius, of which the film has two over its thickness whatever their number; load
-steps.
-"""
+"""Elements in the contact radius, of which the film has two over its thickness; load steps."""
 LARGEST_STRAIN = 0.14
 """Of a film, up to which small strains on its undeformed thickness are taken for an answer: half of it is
 their own error, and with elements of half the size the strain at the edge grows by a tenth; beyond, by half
@@ -40,27 +34,21 @@ of itself and more.
 RADII, THIN_RADIUS = (5e-6, 2e-6, 1e-6), 10e-6
 PRESSURES = (4e9, 6.5e9)
 BARE_RADIUS = 2e-6
-"""Elastic contact radius in m at which the contacts without film are solved, one for all: without film
-nothing has a length, and all that is relative to it is as at any other.
-"""
+"""Elastic contact radius in m of the contacts without film, one for all: nothing there has a length."""
 STEEL = COUNTERBODIES["steel"]
 BODIES = {
     "elastic": None,
     "B 945": Plasticity(law="swift", B=945e6, C=20.0, n=0.121),
     "B 1780": Plasticity(law="swift", B=1780e6, C=4.0, n=0.095),
 }
-"""Steel of the substrate: elastic, the set published for 52100, and what the paper prints in section 5 for
-its own.
-"""
+"""Steel of the substrate: elastic, published for 52100, and as the paper prints in section 5."""
 PERFECT = Plasticity(law="perfect", yield_stress=1.358e9)
 """Body whose film is of its own material: about the initial yield stress of the first Swift law."""
 
 
 @dataclass(frozen=True)
 class FilmContact:
-    """radius: a0 of the elastic contact without film, m; p0: its largest pressure, Pa; body: see BODIES;
-    film: "elastic" or "yields".
-    """
+    """radius: a0 without film, m; p0: its peak pressure, Pa; body: see BODIES; film: "elastic", "yields"."""
 
     radius: float
     p0: float
@@ -84,13 +72,12 @@ def scene_of(base: Scene, contact: FilmContact, cells: int, film: bool = True) -
 
 
 def row_of(contact: FilmContact, scene: Scene, result: Result, bare: Result) -> dict[str, Any]:
-    """A row of the frame. bare: the result without film, on a mesh of its own, at BARE_RADIUS.
-
-    film_strain, body_strain, bare_strain: the largest plastic ones, the last without film; known: the film is
-    not squeezed out of reach of small strains; holds: the claim of Bosman & Schipper (2011). centre: mean
-    over the film on the axis, the plastic strain where it yields, else the von Mises stress, off the thin
-    film; flow: fall of the pressure over r, of the line fitted to it from 0.4 to 0.8 a0, off that of a film
-    that flows out; bare-mesh, hertz: largest pressure without film off that of the other mesh and of Hertz.
+    """A row of the frame. bare: the result without film, on a mesh of its own, at BARE_RADIUS. film_strain,
+    body_strain, bare_strain: the largest plastic ones, the last without film; known: the film is not squeezed
+    out of reach of small strains; holds: the claim of Bosman & Schipper (2011). centre: mean over the film on
+    the axis, the plastic strain where it yields, else the von Mises stress, off the thin film; flow: fall of
+    the pressure over r, of the line fitted to it from 0.4 to 0.8 a0, off that of a film that flows out;
+    bare-mesh, hertz: largest pressure without film off that of the other mesh and of Hertz.
     """
     body, film, q, yields = scene.body, scene.body.coating, result.quantities, contact.film == "yields"
 
@@ -144,9 +131,7 @@ def off(value: float, expected: float) -> float:
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Every contact; some that are much wider than the film is thick or whose film flows out; some on
-    elements of half the size, with what these change; and a film of the material of the body.
-    """
+    """Every contact; much wider ones and films that flow out; finer meshes; a film of the body's material."""
     cells, steps = LEVEL[context.level]
     base, bare = with_loading(context.scene("film-yield"), steps=steps), {}
 

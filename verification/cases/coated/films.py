@@ -1,21 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""What a film changes under a sphere: a map over thickness and modulus, contact radii that break the claim of
-a negligible film, and a film of a tenth of a cell and of ten.
-"""
+"""What a film changes under a sphere: a map, contact radii at which it matters, and thin films."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.kernels import Lags
 from sam.layered import LayeredPatches, Layers
 from sam.scene import Result, Scene
-from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_mesh
+from verification.cases.case import FEM, SAM, Context, DataFrame, Plot, with_grid, with_mesh
 from verification.cases.recipes import coated_scene, film_under
 from verification.figures.specials import change_maps
 from verification.reference.coated_changes import (
@@ -25,15 +23,11 @@ from verification.reference.coated_changes import (
     pressure_change,
 )
 from verification.references import changes_by_film, contact_of
+from verification.rows import CaseFile
 from verification.runs import models
 from verification.runs.sampling import pressure_map
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["at_limits", "changes_of_paper", "grids", "mapped"]
+__all__ = ["at_limits", "changes_of_paper"]
 
 SCENE, QUICK_MESH = "coated-sphere", 16
 PAPER_RATIO, PAPER_FILM, FILM_YIELD = 80 / 210, 100e-9, 0.67e9
@@ -46,9 +40,7 @@ BOTH = {"sam": SAM, "fem": FEM}
 
 
 def changes_of(result: Result) -> dict[str, float]:
-    """By the film, as shares of the values without it. RuntimeError if the model did not converge or has no
-    contact without film to compare with.
-    """
+    """By the film, as shares of the values without it. RuntimeError without convergence or such values."""
     found = {name: result.quantities[f"{name}_max_change"] for name in CHANGES}
     if not result.converged or None in found.values():
         said = " ".join((result.message, *result.warnings))
@@ -72,24 +64,18 @@ POINTS = (
     *((0.6, 2.0, "steel"), (2.0, 0.05, "steel"), (2.0, 0.5, "rigid"), (4.0, 0.1, "rigid")),
     *((4.0, 1.0, "steel"), (10.0, 0.02, "steel"), (10.0, 0.3, "rigid")),
 )
-"""(E1/E2, thickness, counter-body) solved by FEM as well; the first two at the quick level, on coarser
-elements.
-"""
+"""(E1/E2, thickness, counter-body) solved by FEM too; the first two at the quick level, coarser."""
 
 
 def map_scene(base: Scene, ratio: float, thickness: float, counterbody: str) -> Scene:
-    """The sphere of `base` on a film, with few cells and depths; thickness over the contact radius without
-    film.
-    """
+    """The sphere of `base` on a film, with few cells and depths; thickness over a0 without film."""
     scene = coated_scene(base, ratio, thickness, counterbody)
     below = scene.body.coating.thickness + DEPTHS * contact_of(scene).contact_radius
     return with_grid(scene, cells=(CELLS, CELLS), depths=(0.0, *below))
 
 
 def mapped(context: Context) -> Iterator[dict[str, Any]]:
-    """The maps under both counter-bodies against the spectral solution, whose many solves are not kept one by
-    one, and a few of their points by both models.
-    """
+    """The maps under both counter-bodies against the spectral solution, and a few points by both models."""
     base, quick = context.scene(SCENE), context.level == "quick"
     base = with_mesh(base, QUICK_MESH) if quick else base
     (count, *ends), done = SIDES[context.level], 0
@@ -140,9 +126,7 @@ OWN_RADII = {"quick": (1e-6,), "full": (5e-6, 2e-6, 1e-6, 0.5e-6)}
 
 
 def at_limits(context: Context) -> Iterator[dict[str, Any]]:
-    """The contact radius at which the film of the paper breaks the claim, by the spectral solution, and both
-    models there; and what the film carries itself, elastic, at 6.5 GPa without it.
-    """
+    """The contact radius at which the film breaks the claim, both models there, and the film at 6.5 GPa."""
     base, quick = context.scene(SCENE), context.level == "quick"
     base = with_mesh(base, QUICK_MESH) if quick else base
     for other, limit, name in product(COUNTER, LIMITS[: 1 if quick else 2], ("p",) if quick else CHANGES):
@@ -173,9 +157,7 @@ def at_limits(context: Context) -> Iterator[dict[str, Any]]:
 # --- coarse and fine cells ------------------------------------------------------------------------------
 
 PATCHES = {"coarse": (1e-6, 65, 8e-6), "fine": (10e-9, 251, 0.8e-6)}
-"""Size of a cell in m, cells a side, contact radius without film in m: patches of 65 um and 2.5 um, eight and
-eighty cells in the radius.
-"""
+"""Size of a cell in m, cells a side, contact radius without film in m: patches of 65 um and 2.5 um."""
 PARTS = 101
 """Cells of 9.9 nm in a cell of 1 um, along each side; odd, so that they have its centre."""
 LAGS = ((0, 0), (1, 0), (1, 1), (4, 2), (20, 1), (60, 0))
@@ -191,9 +173,7 @@ def patch_scene(base: Scene, cell: float, cells: int, radius: float) -> Scene:
 
 
 def alias(result: Result, wider: Result) -> float:
-    """Largest change of the pressure by a wider patch, over the largest pressure: 0 if nothing repeats
-    itself.
-    """
+    """Largest change of the pressure by a wider patch over the largest pressure: 0 without images."""
     near, far = (pressure_map(each)[2] for each in (result, wider))
     x, y = (np.array(far.shape) - near.shape) // 2
     return float(np.abs(far[x : x + near.shape[0], y : y + near.shape[1]] - near).max() / near.max())

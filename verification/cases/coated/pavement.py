@@ -23,17 +23,14 @@ FOX = {
     1.0: (0.6464, 0.2914, 0.0809, 0.0189),
     2.0: (0.9106, 0.6437, 0.2449, 0.0666),
 }
-"""Radius over thickness -> pressure on the interface below the centre over that on the disc, for DISC_RATIOS;
-nu = 0.5.
-"""
+"""Radius over thickness -> pressure on the interface over that on the disc, for DISC_RATIOS; nu = 0.5."""
 LAST_DIGIT, DISC_CELLS = 1e-4, 100  # of the table; in the radius of the disc
 
 
 def disc_by_response(radius: float, ratio: float) -> float:
     """Pressure on the interface below the centre of a disc over that on it: Hankel integral of SAM's
-    response, nu = 0.5.
-
-    -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the thickness is 1.
+    response, nu = 0.5. -s_zz/p = int_0^inf f(k) radius J1(k radius) dk with f = -s_zz under the wave; the
+    thickness is 1.
     """
     k, weight = wave_numbers(1.0, radius, 40.0)
     wave = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), k).stress(1.0)[0][0, 0]
@@ -41,9 +38,7 @@ def disc_by_response(radius: float, ratio: float) -> float:
 
 
 def disc_by_cells(radius: float, ratio: float) -> float:
-    """The same by SAM's coefficients: the disc of cells, those on its edge loaded by the share that it
-    covers.
-    """
+    """The same by SAM's coefficients: the cells of the disc, on its edge by their share in it."""
     cell, n = radius / DISC_CELLS, DISC_CELLS + 1
     patches = LayeredPatches(Layers(ratio, 0.5, 1.0, 1.0, 0.5))
     coefficients = patches.stress(Lags(n, n, cell, cell), [1.0], load=3, names=["33"])[0, 0]
@@ -52,9 +47,7 @@ def disc_by_cells(radius: float, ratio: float) -> float:
 
 
 def covered(n: int) -> np.ndarray:
-    """Share of the cells (i, j), 0 <= i, j <= n, unit squares around their numbers, in the disc of radius n:
-    (n + 1, n + 1).
-    """
+    """Share of the unit cells (i, j), 0 <= i, j <= n, in the disc of radius n: (n + 1, n + 1)."""
 
     def quadrant(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Area of the disc in 0..x, 0..y; odd in both. Below y up to where the circle falls below it, then
@@ -72,9 +65,7 @@ def covered(n: int) -> np.ndarray:
 
 
 def pavement(context: Context) -> Iterator[dict[str, Any]]:
-    """Pressure on the interface over that on the disc: of the table, by a quadrature of its own and in two
-    ways by SAM.
-    """
+    """Pressure on the interface over that on the disc: of the table, by quadrature, and twice by SAM."""
     for radius, published in FOX.items():
         for ratio, table in zip(DISC_RATIOS, published, strict=True):
             own, wave, cells = (

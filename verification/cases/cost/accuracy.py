@@ -84,10 +84,9 @@ def searched(
     context: Context, scene: Scene, truth: float, accuracies: Sequence[float]
 ) -> Iterator[dict[str, Any]]:
     """A scene at some accuracies. Every solve is made once, and kept in the store; the time of a short one is
-    the least of three, as the first of its kind also loads what it needs.
-
-    all, finest: processor seconds of all solves, and of the one that took longest; best-fixed: of the
-    cheapest grid whose true error is no larger, which only who knows the answer can choose.
+    the least of three, as the first of its kind also loads what it needs. all, finest: processor seconds of
+    all solves, and of the one that took longest; best-fixed: of the cheapest grid whose true error is no
+    larger, which only who knows the answer can choose.
     """
     kept: dict[str, Result] = {}
     (name,) = quantities_of(scene)

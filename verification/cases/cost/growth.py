@@ -4,18 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import FEM_3D, Context, Plot, SmallTable
+from verification.cases.case import FEM_3D, Context, DataFrame, Plot, SmallTable
 from verification.cost import growth
 from verification.figures.lines import Curve, curves
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 ERROR = 1e-4  # of the stress/mu of a unit strain by sweeps
 BOXES = {
@@ -49,9 +46,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def rows_of(found: Mapping[str, list[dict]], boxes: Mapping[str, list[dict]]) -> Iterator[dict[str, Any]]:
-    """The rows of ladders that were climbed, and of boxes. further-s: of the stresses, beyond the contact
-    alone.
-    """
+    """The rows of climbed ladders, and of boxes. further-s: of the stresses, beyond the contact alone."""
     contact = {row["size"]: row["cpu-s"] for row in found["contact"]}
     for name, taken in found.items():
         for row in taken:

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Speed, memory and counts of this code over those of the code that was published last: both solve the same
-scenes in turns, each time in a process of its own.
-"""
+"""Speed, memory and counts of this code over those of the code that was published last, in turns."""
 
 from __future__ import annotations
 
@@ -18,16 +16,13 @@ from compileall import compile_dir
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import FEM, FEM_3D, SAM, Context, SmallTable
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, SmallTable
 from verification.runs.code_version import OF_CASES
 from verification.runs.threads import EVERY_LIBRARY
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 ROOT = Path(__file__).resolve().parents[3]
 PAIRS, LOSS = 5, 1.2
@@ -121,9 +116,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def solved(rung: Rung, text: str, tree: Path) -> dict[str, Any]:
-    """What `samfem solve` of a tree takes for a scene, counts and finds. The time is that of the process, as
-    one version loads at its start what another one loads in the solve.
-    """
+    """What `samfem solve` of a tree takes for a scene, counts and finds; the time is of the process."""
     project = tomllib.loads((tree / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     module, function = project["scripts"]["samfem"].split(":")
     with TemporaryDirectory(prefix="samfem-solve-") as folder:
@@ -150,9 +143,7 @@ def solved(rung: Rung, text: str, tree: Path) -> dict[str, Any]:
 
 
 def row_of(pairs: Sequence[tuple[Mapping[str, Any], ...]]) -> dict[str, Any]:
-    """Of what the published code and this one took in turns: medians, ratios, what grew of the counts and
-    over what is allowed, and how far the results are apart.
-    """
+    """What both codes took in turns: medians, ratios, what grew of the counts, how far results are apart."""
     row: dict[str, Any] = {}
     for what, unit, size in (("time", "s", 1.0), ("memory", "MB", 1e6)):
         ratios = [new[what] / old[what] for old, new in pairs]

@@ -1,21 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Whether the uncertainty that samfem gives covers the error, on problems whose answer is known.
-
-Problems that differ are drawn from a seed. Dimensionless numbers make a problem: two elastic spheres are one,
-whatever their loads. So an elastic sphere is drawn once, and of the others shape, film, law, friction and
-load over yield stress differ.
+"""Whether the uncertainty that samfem gives covers the error, on problems whose answer is known. They are
+drawn from a seed; as dimensionless numbers make a problem, an elastic sphere is drawn once, and of the others
+shape, film, law, friction and load over yield stress differ.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import FEM, SAM, Context, Plot, with_grid, with_keys, with_loading
+from verification.cases.case import FEM, SAM, Context, DataFrame, Plot, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
 from verification.figures import lines
 from verification.quantities import QUANTITIES
@@ -27,16 +25,10 @@ from verification.runs.store import solve_or_reuse
 from verification.uncertainty.rule import bound, order_seen
 from verification.uncertainty.solving import asked_of, solve
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 SEED = 20261125
 DRAWS = 5  # of a problem, until its plastic zone fits the grid
 KNOWN = 3.0  # times better than uncertainty or error is a reference that counts
-MESHES, BOX = (
-    (16, 24),
-    20.0,
-)  # elements in the radius of a finite-element reference; 20 radii: 0.005 % off
+MESHES, BOX = ((16, 24), 20.0)  # elements in the radius of a finite-element reference; 20 radii: 0.005 % off
 FINER = 1.75  # times as many cells, of a reference by SAM
 MORE_STEPS = (2, 4)  # times as many load steps, of a reference
 FRICTION, AREA = 0.2, "contact_area_m2"
@@ -50,9 +42,7 @@ Draw = np.random.Generator
 
 
 def textbook(entry: Mapping[str, Any]) -> float:
-    """The uncertainty by the cells with the observed order and the factor 1.25 (Roache 1998), where none is
-    seen with the second and 3; by load steps and box as the program.
-    """
+    """The uncertainty by the observed order and the factor 1.25 (Roache 1998), else the second and 3."""
     values, sizes = entry["values"], [1.0 / count for count in entry["cells"]]
     seen = order_seen(values, sizes)
     order, factor = (2.0, 3.0) if seen is None else (seen, 1.25)
@@ -60,14 +50,9 @@ def textbook(entry: Mapping[str, Any]) -> float:
 
 
 def rows_of(
-    context: Context,
-    problem: str,
-    drawn: Callable[[int], Scene],
-    truth_of: Callable[[Context, Scene], Truth],
+    context: Context, problem: str, drawn: Callable[[int], Scene], truth_of: Callable[[Context, Scene], Truth]
 ) -> Iterator[dict[str, Any]]:
-    """Every quantity of a problem that has an uncertainty and a reference. A scene whose plastic zone leaves
-    its grid has neither, and is drawn again.
-    """
+    """Every quantity with an uncertainty and a reference. A zone that leaves its grid is drawn again."""
     for number in range(DRAWS):
         scene = drawn(number)
         try:
@@ -85,9 +70,7 @@ def rows_of(
 
 
 def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str, float]:
-    """The error and the uncertainties over the truth, and, where the reference is good enough to say
-    anything, whether the error is covered. entry: what the program says; doubt: uncertainty of the truth.
-    """
+    """Error and uncertainties over the truth, and whether it is covered. doubt: uncertainty of the truth."""
     own, error = entry["u_num"], abs(entry["values"][0] - truth)
     rules = {"uncertainty": own, "textbook": textbook(entry)}
     row = {"error": error / abs(truth)} | {name: value / abs(truth) for name, value in rules.items()}
@@ -111,9 +94,7 @@ def solved(context: Context, scene: Scene, model: str) -> Result:
 
 
 def finer(context: Context, scene: Scene, model: str, names: Sequence[str]) -> Truth:
-    """From finer cells or elements, and more load steps, extrapolated in both by their formal orders. doubt:
-    the extrapolation, of load steps a half; names: of the quantities.
-    """
+    """From finer cells and more load steps, extrapolated by formal orders. doubt: that, of steps a half."""
     few, many = (with_loading(scene, steps=scene.loading.steps * times) for times in MORE_STEPS)
 
     def of(other: Scene, rank: int) -> Mapping[str, Any]:

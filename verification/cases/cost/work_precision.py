@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Error against run time for every kind of contact: SAM in its forms and both finite-element models; what to
-take when.
-
-Each solve is made in a process of its own, the methods of a problem in turn, with the time of a fixed kernel
+"""Error against run time for every kind of contact, in every form of SAM and both finite-element models. Each
+solve is made in a process of its own, the methods of a problem in turn, with the time of a fixed kernel
 beside them; errors are against references that know their own uncertainty.
 """
 
@@ -12,12 +10,12 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise, zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, SmallTable, number
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, Plot, SmallTable, number
 from verification.cases.cost.work_precision_problems import (
     AXISYMMETRIC,
     COUPLED,
@@ -36,9 +34,6 @@ from verification.figures.style import Drawing
 from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 STUDIED = {problem.name: problem for problem in (*PROBLEMS, ELLIPSOID)}
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""
@@ -52,19 +47,14 @@ FAST_S, REPEATS = 1.0, 3
 OLD_S = 30.0
 """After so long the calibration kernel is run again; it takes 1.5 s with its process."""
 EXACT = 1e-8
-"""Uncertainty of the closed forms: of the spectral solution of the coated sphere, and more than that of the
-others.
-"""
+"""Uncertainty of the closed forms: that of the spectral solution of the coated sphere, the largest."""
 FEWEST = 3  # points of an extrapolation
 STEPS = "load steps"
 Solve = Callable[[Scene, str], Result]
 
 
 def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve | None = None) -> Iterator:
-    """A row for each solve: problem, what is refined, method, its cost and its error.
-
-    names, solve: problems, and how a scene is solved (in a process of its own).
-    """
+    """A row for each solve: problem, what is refined, method, cost, error. solve: in a process of its own."""
     for name in names:
         problem = STUDIED[name]
         scene = problem.scene(context.scene(problem.file))
@@ -101,9 +91,7 @@ def in_turn(ladders: Sequence[Sequence[int]]) -> Iterator[tuple[int, int]]:
 
 
 def once(problem: Problem, method: Method, scene: Scene, resolution: int, *, solve: Solve) -> dict[str, Any]:
-    """One solve. Values are left out where they do not count, or the peak was not reached; a solve that
-    breaks off is a row without values that says why.
-    """
+    """One solve. Values are left out where they do not count; one that breaks off is a row that says why."""
     row: dict[str, Any] = {"method": method.name, "resolution": resolution, "cpu_s": math.nan, "values": {}}
     try:
         result = solve(method.at(scene, resolution), method.model)
@@ -182,10 +170,8 @@ def reached(rows: DataFrame, method: str, target: float, column: str = "cpu_s") 
 
 def ratio_at(rows: DataFrame, target: float) -> float:
     """Time of SAM, on one grid or on two, over that of the axisymmetric model for one error; infinite where
-    SAM never reaches it.
-
-    A model that never reaches it needs more than its finest point took: that time is taken, which is in its
-    favour.
+    SAM never reaches it. A model that never reaches it needs more than its finest point took: that time is
+    taken, which is in its favour.
     """
     own, its = ([reached(rows, n, target).value for n in names] for names in (ONES, [AXISYMMETRIC]))
     least = min((each for each in own if each is not None), default=math.inf)
@@ -205,10 +191,8 @@ def ratio_at_a_third(rows: DataFrame, _: str) -> float:
 
 def faster(rows: DataFrame, other: str) -> tuple[float, float]:
     """How many times the processor time of SAM, on one grid or on two, another method takes to the smallest
-    error that both reach, and that error; nan where one of them reaches none.
-
-    The error is that of the finest point of the one that ends at the larger, and at least KNOWN times the
-    floor.
+    error that both reach, and that error; nan where one of them reaches none. The error is that of the finest
+    point of the one that ends at the larger, and at least KNOWN times the floor.
     """
     last = {name: float(own.iloc[-1]) for name, own in rows["error"].groupby(rows["method"])}
     least = KNOWN * max(rows["floor"])
@@ -284,9 +268,7 @@ def times(frame: DataFrame) -> SmallTable:
 
 
 def to_one_percent(frame: DataFrame) -> dict[str, Any]:
-    """Under `times` each problem, its quantities, and method -> processor seconds to an error of 1 %, None
-    where it is not reached, and whether they are a bound.
-    """
+    """Under `times`: problem, quantities, and method -> seconds to 1 % or None, and whether a bound."""
     found = []
     for problem, rows in ladders(frame):
         words = dict.fromkeys(MEASURES[name] for name in rows["references"].iloc[0])

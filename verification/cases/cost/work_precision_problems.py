@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The problems of case work-precision: scenes, methods with their ladders of resolutions, and what is
-measured of them.
-
-A ladder of more, or finer, resolutions is a longer tuple below: nothing else has to change.
-"""
+"""The problems of case work-precision: scenes, methods with their ladders of resolutions, measures."""
 
 from __future__ import annotations
 
@@ -14,16 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Friction, Grid, Scene
-from verification.cases.case import (
-    FEM,
-    FEM_3D,
-    SAM,
-    with_body,
-    with_grid,
-    with_keys,
-    with_loading,
-    with_mesh,
-)
+from verification.cases.case import FEM, FEM_3D, SAM, with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.cases.recipes import BOX, Resolution, at_ratio, coated_scene, resolved_at, resolved_grid
 from verification.cost.advice import (
     COATED,
@@ -63,7 +50,6 @@ PATCH = 32e-6
 @dataclass(frozen=True)
 class Method:
     """A model as it is asked, and its ladder, coarse to fine. at: the scene of the problem at a resolution.
-
     strict: an answer that did not converge counts as none. The loop of the paper need not converge in our
     sense.
     """
@@ -78,11 +64,10 @@ class Method:
 @dataclass(frozen=True)
 class Problem:
     """One contact. scene: from that of `file`; kind: of the advice it gives, empty for none; measures:
-    quantities of the result, the error being the largest of theirs.
-
-    advised: what the advice calls a resolution of 1, its name and size, from the scene and the reference
-    values. exact: closed form, quantity -> value; else the reference is extrapolated from the `tops` finest
-    points of each of `references`, names of methods. steps: SAM with its load steps refined.
+    quantities of the result, the error being the largest of theirs. advised: what the advice calls a
+    resolution of 1, its name and size, from the scene and the reference values. exact: closed form, quantity
+    -> value; else the reference is extrapolated from the `tops` finest points of each of `references`, names
+    of methods. steps: SAM with its load steps refined.
     """
 
     name: str
@@ -193,10 +178,7 @@ def _worn(base: Scene) -> Scene:
 
 
 OVER_STEPS = Method(
-    COUPLED,
-    SAM,
-    LOAD_STEPS,
-    lambda scene, steps: with_loading(plastic_cells(scene, AT_STEPS), steps=steps),
+    COUPLED, SAM, LOAD_STEPS, lambda scene, steps: with_loading(plastic_cells(scene, AT_STEPS), steps=steps)
 )
 """Load steps refined at one resolution."""
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A sphere that grows and shrinks inside a body with a back-stress, a little above the limit below which it
-settles: strain of a period and verdict of both models against the exact solution, which alternates.
-
-With Armstrong and Frederick's law the strain that a period leaves falls to nothing by a few per cent a period
-or less: nothing ratchets, and it takes many periods to see that.
+settles: both models against the exact solution, which alternates. With Armstrong and Frederick's law the
+strain of a period falls to nothing, by a few per cent a period or less: nothing ratchets.
 """
 
 from __future__ import annotations
@@ -18,7 +16,7 @@ from verification.quantities import Reference
 from verification.reference.misfit_sphere import PROFILES
 from verification.references import growing_sphere
 
-__all__ = ["even_sphere", "period"]
+__all__ = ["even_sphere"]
 
 YIELD, MODULUS = 1e9, 160e9
 REACHES = np.linspace(0.3, 3.0, 2701)  # radii at which the exact solution is looked at
@@ -28,9 +26,7 @@ TOLD = 30  # the period after which the number of further periods is read
 
 
 def above_limit(scene: Scene, of: tuple[float, float]) -> Scene:
-    """A share of the misfit above that below which the elastic range holds a period everywhere, in the end,
-    and the recovery of the back-stress.
-    """
+    """Share of the misfit above that below which a period stays elastic in the end, and the recovery."""
     (share, recovery), body = of, scene.body
     excess = float(PROFILES["gauss"](REACHES)[1].max())
     limit = 2 * YIELD * (1 - body.poisson) / (body.young * excess)

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""What is looked at where a Hertz pressure, with or without traction, comes and goes in place on a body with
-back-stresses: the verdict, where it yields to and fro, and the strain on the axis of SAM against finite
-elements.
-"""
+"""What is looked at where a Hertz pressure comes and goes in place on a body with back-stresses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import with_body, with_keys, with_loading
+from verification.cases.case import DataFrame, with_body, with_keys, with_loading
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hertz import subsurface_stress
@@ -30,8 +26,6 @@ __all__ = [
     "strain_on_axis",
 ]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 LAWS = {
     "prager": (3.4e9, {"modulus": (210e9 / 19,), "recovery": (0.0,)}),
@@ -54,9 +48,7 @@ def law(scene: Scene, name: str) -> Scene:
 
 
 def floor(scene: Scene, factor: float) -> Scene:
-    """The strain below which a cycle counts as without, over a thousandth of the yield strain: it follows
-    from the tolerance and the steps.
-    """
+    """The strain below which a cycle counts as without, over a thousandth of the yield strain."""
     steps = scene.loading.steps
     return with_keys(scene, "solver", tolerance=1e-3 / (4 * 2 * 6) * factor * 6 / steps)
 
@@ -122,9 +114,7 @@ def _elastic(scene: Scene) -> Profile:
 
 
 def on_axis(scene: Scene, result: Result, name: str) -> Profile:
-    """A field, unloaded after the last cycle: at nodes of SAM on the axis, means of the elements around it;
-    of classes the highest.
-    """
+    """A field at last, unloaded: at nodes of SAM on the axis, means around it, of classes the highest."""
     fields, radius = result.fields, scene.loading.radius
     if "peeq" in fields.point_data:
         points, values = fields.points, fields.point_data[name]
@@ -200,9 +190,7 @@ def limits(rows: DataFrame, column: str) -> tuple[np.ndarray, list[np.ndarray]]:
 
 
 def apart(rows: DataFrame, column: str) -> float:
-    """Largest difference of both models over the largest value, extrapolated in the load steps where there
-    are two numbers of them.
-    """
+    """Largest difference of both models over the largest value, extrapolated in two numbers of steps."""
     by_steps = [limits(own, column)[1] for _, own in rows.groupby("loading.steps")]
     sam, fem = by_steps[0] if len(by_steps) == 1 else (2 * b - a for a, b in zip(*by_steps, strict=True))
     return float(np.abs(sam - fem).max() / np.abs(fem).max())

@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Five materials that run in with back-stresses, as a test of whether wear goes on linearly.
-
-They have one curve of first loading, hardened isotropically, kinematically and by halves. The shares are
-assumed, not measured: no cyclic curve of the steel is known.
+"""Five materials that run in with back-stresses: does wear go on linearly? They have one curve of first
+loading; the shares of kinematic hardening are assumed, no cyclic curve of the steel is known.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from sam.scene import Plasticity
 from verification.cases.case import SAM, Context, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import MODULI, NAMES, RECOVERY, SHARES, Effort, Run
-
-if TYPE_CHECKING:
-    from sam.scene import Plasticity
 
 EFFORT = Effort(cycles=10, steps=4, cells=48)
 FITTED, HALF = (1e-6, 0.03), EFFORT.cycles // 2
@@ -35,9 +31,7 @@ def misfit(law: Plasticity) -> float:
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:
-    """A row for each material and way to harden: volumes in m3, the first and the last friction, and the
-    strain of the first loading, over that reached by the isotropic body, less 1.
-    """
+    """A row for each material and way to harden: volumes, m3, friction, strain over the isotropic less 1."""
     for case, base in study.printed_scenes(context, EFFORT).items():
         isotropic = None
         for way, share in SHARES.items():

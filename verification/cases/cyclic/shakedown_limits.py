@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A Hertz load with and without traction on a body with Prager's back-stress, on either side of the shakedown
-limit: pressed in place, and travelling.
-
-Cells see means of the stress, so that a grid has a limit of its own above that of the body. It follows from
-the same theorem, by the smallest ball about the means over each cell: the plastic strain of coarse cells
-settles beyond the limit of the body, and rightly so.
+"""A Hertz load on a body with Prager's back-stress, on either side of the shakedown limit, in place and
+travelling. Cells see means of the stress: a grid has a limit of its own above that of the body, by the same
+theorem the smallest ball about the means over each cell.
 """
 
 from __future__ import annotations

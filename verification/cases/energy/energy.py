@@ -1,30 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""The work of the surface tractions is what is stored and dissipated, in both models, over loading and
-unloading.
-"""
+"""The work of the surface tractions is what is stored and dissipated, in both models."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Friction, Scene
-from verification.cases.case import FEM, FEM_3D, SAM, Context, Plot, with_body, with_loading
+from verification.cases.case import FEM, FEM_3D, SAM, Context, DataFrame, Plot, with_body, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
-from verification.energy import of_fem, of_sam
-from verification.energy.balance import Balance
+from verification.energy import Balance, balance_of_fem, balance_of_sam
 from verification.figures.specials import over_path
 from verification.reference.convergence import fit_power
 from verification.references import contact_of
+from verification.rows import CaseFile
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["balances", "order_in_cells", "order_in_steps", "path"]
+__all__ = ["balances", "order_in_cells", "order_in_steps"]
 
 RATIO = 4.0
 STEPS = (6, 12, 24)  # of the loading; the first for all grids, the coarsest grid for all of them
@@ -48,9 +41,7 @@ SOLVED = {
         *(("alternating", SAM, True), ("alternating", FEM, True)),
     ),
 }
-"""Case -> contacts and models, and whether they take each number of steps on the coarsest grid and the fewest
-steps on each of SAM, or the fewest on the finest.
-"""
+"""Case -> contacts, models, and whether with each number of steps on the coarsest grid, or the fewest."""
 # Of a pressure in place, over the yield stress: 1.5 times Melan's limit for Prager's back-stress. Its modulus
 # in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9
@@ -66,9 +57,7 @@ def scene_of(context: Context, contact: str, steps: int, size: int) -> Scene:
 
 
 def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
-    """A given pressure that comes and goes three times, on cells or elements of radius/size; perfect
-    plasticity with Prager's back-stress.
-    """
+    """A given pressure, three times, on cells or elements of radius/size; Prager's perfect plasticity."""
     plasticity = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (MODULUS,)}}
     pressure = {"prescribed": "hertz", "p0": ALTERNATING * YIELD, "radius": radius}
     side, count = 5 * radius, 5 * size
@@ -102,20 +91,19 @@ def balances(context: Context) -> Iterator[dict[str, Any]]:
     for contact, model, size, scene in asked(context):
         steps = scene.loading.steps
         context.progress(f"{context.case}, {contact}: {model}, {steps} steps", 1, 1)
-        one = of_sam.balance_of(scene) if model == SAM else of_fem.balance_of(scene, model)
+        one = balance_of_sam(scene) if model == SAM else balance_of_fem(scene, model)
         where = {"contact": contact, "model": SHORT[model], "size": size, "steps": steps}
         yield where | row(one, contact) | {"hertz": 2 / 5 * exact.force * exact.approach}
 
 
 def row(one: Balance, contact: str) -> dict[str, Any]:
     """Energies in J: the work at the peak, dissipated and locked, stored as cold work, after unloading; the
-    largest errors of the cells and of the steps over the states.
-
-    within-cells: plastic work of stresses that vary within cells over the largest work, 0 in FEM. pressing:
-    what the work F delta of the counter-body differs by from that of the pressure, up to the peak. Of one
-    that alternates, in its last cycle, between two states without force, over what that dissipates: cycle,
-    the work less what is dissipated, as elastic energy and that of the back-stresses are to come back; flow,
-    the plastic work less what is dissipated and stored by back-stresses.
+    largest errors of the cells and of the steps over the states. within-cells: plastic work of stresses that
+    vary within cells over the largest work, 0 in FEM. pressing: what the work F delta of the counter-body
+    differs by from that of the pressure, up to the peak. Of one that alternates, in its last cycle, between
+    two states without force, over what that dissipates: cycle, the work less what is dissipated, as elastic
+    energy and that of the back-stresses are to come back; flow, the plastic work less what is dissipated and
+    stored by back-stresses.
     """
     values = {
         "work": one.work[one.peak],

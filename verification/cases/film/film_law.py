@@ -17,12 +17,8 @@ from verification.reference.bonded_film import film_pressure, in_plane_strain, n
 from verification.reference.convergence import fit_power
 from verification.reference.film_flow import Film, FlowPoint
 
-__all__ = ["frame"]
-
 FILM, BODY = (80e9, 0.3, 2e9 / 3.0), (210e9, 0.3)
-"""E in Pa and nu, of the film also its yield stress in Pa, a third of its hardness: Bosman & Schipper (2011),
-section 4.
-"""
+"""E in Pa and nu, of the film also its yield stress in Pa: Bosman & Schipper (2011), section 4."""
 FRICTIONS, HIGH = (0.0, 0.1), 0.4
 TRACK, WIDTH, SPEED, THICKNESS = 314.15e-3, 300e-6, 1.0, 100e-9
 SUBSTEPS = (16, 32, 64, 128)
@@ -50,9 +46,7 @@ def friction_of(bath: float) -> Friction:
 
 
 def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
-    """A fresh film after one step to each pressure (n,), on a body strained as at the centre of a Hertz
-    contact.
-    """
+    """A fresh film after one step to each pressure (n,), strained as at the centre of a Hertz contact."""
     plane, normal = (
         np.array([strain(p, *BODY) for p in pressure])[:, None] for strain in (in_plane_strain, normal_strain)
     )
@@ -61,9 +55,7 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
 
 
 def path_errors() -> tuple[np.ndarray, float]:
-    """Error of the plastic strain after the winding path in each of SUBSTEPS a part, over its largest
-    component, and that of the extrapolated one.
-    """
+    """Error after the winding path in each of SUBSTEPS a part, over its largest component; extrapolated."""
     law, right, found = law_of(FRICTIONS[1]), Film(*FILM).along(WINDING), []
     for substeps in SUBSTEPS:
         state = FilmState.fresh((1, 1))

@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_reference import plastic_radius
 from fem_reference.finite_strain import Curve, build, curve_of, load_to
 from sam.scene import Scene
-from verification.cases.case import Context
+from verification.cases.case import Context, DataFrame
 from verification.references import contact_of
 from verification.runs.model_range import (
     COLUMNS,
@@ -29,11 +29,6 @@ from verification.runs.model_range import (
     errors,
 )
 from verification.runs.tables import columns_text
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-__all__ = ["elastic", "plastic", "stated"]
 
 LIMIT = 0.05
 """Relative difference from which on the models of the scenes are called no good."""
@@ -115,9 +110,7 @@ FRESH = (
 @dataclass(frozen=True)
 class Difference:
     """Relative difference of a quantity at equal force over a/R of the finite model, and its fit x (c1 + c2 x
-    + c3 x^2).
-
-    covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
+    + c3 x^2). covariance: (3, 3) of the coefficients, by the scatter of the points about the fit.
     """
 
     x: np.ndarray
@@ -143,9 +136,7 @@ class Difference:
         return 2.0 * np.sqrt(np.einsum("...i,ij,...j->...", powers, self.covariance, powers))
 
     def limit(self, errors: float = 0.0) -> float:
-        """a/R at which the fit, with so many of its errors taken outwards, first reaches LIMIT; infinite if
-        it does not.
-        """
+        """a/R at which the fit, its errors taken outwards, first reaches LIMIT; infinite if it does not."""
         dense = np.linspace(0.0, self.x.max(), 4001)
         beyond = np.flatnonzero(np.abs(self(dense)) + errors * self.error(dense) >= LIMIT)
         return float(dense[beyond[0]]) if beyond.size else np.inf
@@ -174,9 +165,7 @@ def differences(found: Mapping[str, Curve], elements: int) -> dict[str, Differen
 
 
 def range_rows(body: Body, found: Mapping[str, Curve]) -> DataFrame:
-    """Rows of the table of `verification.runs.model_range`: errors of the flat model over its own a/R, by the
-    fits, with two of their standard errors.
-    """
+    """Rows of the table of `model_range`: errors of the flat model over its a/R with two standard errors."""
     import pandas as pd
 
     fits = errors_of_flat(body, found)
@@ -225,7 +214,6 @@ def loaded_once(kind: str, reach: float, elements: int) -> tuple[Scene, Curve]:
 
 def small_load() -> dict[str, float]:
     """At a/R = 1e-3 by the finite model against Hertz; at 2e-3 the first-order change by true geometry alone.
-
     By Johnson's u_r = -(1 - 2 nu)(1 + nu) a^2 p0/(3 E r) (1 - (1 - r^2/a^2)^(3/2)) the gap changes by r
     u_r/R; the radial part p r/R of a pressure along the normal moves the surface by that of the bracket which
     is left. Both together are uniform: the contact stays that of Hertz, its radius moves by u_r(a), and the
@@ -252,9 +240,7 @@ def small_load() -> dict[str, float]:
 
 
 def compared(context: Context, bodies: Sequence[Body]) -> Iterator[dict[str, Any]]:
-    """The differences of each body; the limits of the first, and what a coarser mesh changes there; and what
-    the table of samfem is off.
-    """
+    """The differences of each body; the limits of the first, on a coarser mesh too; what the table is off."""
     found = {body.name: curves(context, body, body.elements) for body in bodies}
     fits = {body.name: differences(found[body.name], body.elements) for body in bodies}
     other = differences(curves(context, bodies[0], COARSER), COARSER)
@@ -289,9 +275,7 @@ def plastic(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def stated(context: Context) -> Iterator[dict[str, Any]]:
-    """What is said of a scene, against materials and meshes that the table behind it was not made of: stated
-    error with its uncertainty, measured error, and the factor between them.
-    """
+    """What is said of other materials and meshes: stated error and uncertainty, measured error, factor."""
     for body in FRESH:
         fits = errors_of_flat(body, curves(context, body, body.elements))
         for x in (0.1, 0.2, 0.3):
@@ -309,9 +293,7 @@ def stated(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def factor(stated: float, uncertainty: float, measured: float) -> float:
-    """By which two errors differ, once the stated one is moved by its uncertainty towards the other; infinite
-    where they have other signs.
-    """
+    """By which two errors differ once the stated one is moved by its uncertainty; infinite by sign."""
     nearest = stated + np.clip(measured - stated, -uncertainty, uncertainty)
     ratio = nearest / measured
     return float(max(ratio, 1.0 / ratio)) if ratio > 0.0 else np.inf

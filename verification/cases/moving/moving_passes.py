@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Passes of a rigid sphere over a track: steel one way and to and fro, with and without friction; bodies of
-perfect plasticity that settle, or flow in every pass.
-"""
+"""Passes of a rigid sphere over a track, with and without friction, on steel and on perfect plasticity."""
 
 from __future__ import annotations
 
@@ -24,9 +22,7 @@ STEEL = {
 }
 """Coefficient of friction, and whether the sphere goes to and fro; with friction at the full level."""
 PERFECT = {"settles": (2.2, "shakedown"), "flows": (4.0, "alternating")}
-"""p0 over the yield stress of perfect plasticity, and what becomes of it. It goes on for eight passes, until
-each strains the body alike.
-"""
+"""p0 over the yield stress of perfect plasticity, and what becomes of it, in eight passes."""
 LARGE = 4  # passes whose new strain is far above the 6e-7 that the plastic iteration leaves
 
 

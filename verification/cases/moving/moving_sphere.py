@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A rigid sphere that moves over a body: Hertz at every place; the groove of Swift steel, its symmetry, its
-energy, and what it shows at the start.
-"""
+"""A rigid sphere that moves over a body: Hertz at every place; the groove, its symmetry and energy."""
 
 from __future__ import annotations
 
@@ -13,8 +11,7 @@ import numpy as np
 from sam.scene import Friction, Result, Scene
 from verification.cases.case import SAM, Context, with_body, with_grid
 from verification.cases.recipes import TRACK, on_track, radius_at
-from verification.energy.balance import Balance
-from verification.energy.of_sam import balance_of
+from verification.energy import Balance, balance_of_sam
 from verification.references import hertz_sphere
 
 ELASTIC = {"cells": 8, "length": 9 * 2.25 / 8, "per_radius": 8 / 2.25}  # 9 steps of 2 1/4 cells
@@ -89,7 +86,7 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     scenes = {"elastic": elastic, "steel": steel, "coarse": coarse}
     scenes |= {f"coarse-{name}": on_track(base, COARSE | keys) for name, keys in OTHERS.items()}
     results = {name: context.solve(SAM, scene, name) for name, scene in scenes.items()}
-    sliding = balance_of(coarse.model_copy(update={"friction": Friction(coefficient=0.2)}))
+    sliding = balance_of_sam(coarse.model_copy(update={"friction": Friction(coefficient=0.2)}))
     yield {"sweep": "elastic"} | against_hertz(elastic, results["elastic"])
     depth = results["coarse"].quantities["groove_depth_m"]
     for name in ("whole", "half"):
@@ -97,7 +94,7 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         yield {"sweep": f"coarse-{name}", "shifted": abs(shifted / depth - 1)}
     turned = changed_by_turn(results["coarse"], results["coarse-back"])
     yield {"sweep": "coarse", "friction-energy": sliding.error_of_cells} | turned
-    track, found, a = results["steel"].quantities, balance_of(steel), radius_at(steel)
+    track, found, a = results["steel"].quantities, balance_of_sam(steel), radius_at(steel)
     way, groove = groove_of(steel, results["steel"])
     steady = groove[np.asarray(results["steel"].tables["track"]["steady"]) == 1]
     yield {

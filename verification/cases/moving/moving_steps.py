@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How the groove of a rigid sphere that moves depends on the step along the path, and on the cells; whether
-coarse runs extrapolate to the limit of fine ones, and the uncertainty of a single run covers its error.
-"""
+"""How the groove of a rigid sphere depends on the step along the path, and on the cells."""
 
 from __future__ import annotations
 

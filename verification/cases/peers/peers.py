@@ -43,9 +43,7 @@ REFERENCES = "Step: references, with the distance of the next coarser grid as un
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """Every program in turn, in several rounds: a row a measurement, led by what is compared and how well all
-    solve one discrete problem, by their tight solutions on a grid of each kind.
-    """
+    """Every program in turn, in rounds: a row a measurement, led by what is compared, and how well."""
     python = interpreter()
     versions = installed(python)
     pythons, rounds = pythons_of(python, versions), ROUNDS[context.level]
@@ -90,9 +88,7 @@ def half_space(context: Context) -> StoredReference:
 
 
 def reached(rows: DataFrame, target: float, floor: float = 0.0) -> dict[str, tuple[str, float | None]]:
-    """Program -> its curve that is first at an error of `target`, and when; a curve that never is there
-    counts last.
-    """
+    """Program -> its curve that first is at an error of `target`, and when; last are those never there."""
     found: dict[str, tuple[str, float | None]] = {}
     solved = rows[rows["seconds"].notna()]
     for (program, curve), own in solved.groupby(["model", "curve"], sort=False):
@@ -135,9 +131,7 @@ def contact_mechanics_on_finest(rows: DataFrame, _: str) -> float:
 
 
 def step_on(rows: DataFrame, cells: tuple[int, int]) -> dict[str, Any]:
-    """Tamaas' step on these cells beside SAM's at its error, which counts as no smaller than what is unknown
-    of SAM's reference: ratios of times there, and on the same cells.
-    """
+    """Tamaas' step on these cells beside SAM's at its error: ratios of times there, and on the same cells."""
     same, theirs = fastest(rows, cells_in_words(cells)).reindex([SAM, TAMAAS]).iloc
     own = rows[rows["model"] == SAM]
     floor = own["floor"].max()
@@ -175,9 +169,7 @@ def _table(caption: str, lines: list[dict[str, Any]]) -> SmallTable:
 
 
 def hertz_times(frame: DataFrame) -> SmallTable:
-    """Elastic Hertz: time to an error of the largest pressure, and on the same grid with settings whose error
-    is that of the grid.
-    """
+    """Elastic Hertz: time to an error of the largest pressure, and on the same grid at its error."""
     rows = frame[frame["sweep"] == problems.HERTZ]
     times, lines = reached(rows, elastic.HERTZ_ERROR), []
     at = number(elastic.HERTZ_ERROR, 1)

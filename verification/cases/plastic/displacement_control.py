@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The approach is given and the force is found: SAM and FEM against Hertz, against each other, and against
-force control.
-"""
+"""The approach is given and the force is found, in both models."""
 
 from __future__ import annotations
 

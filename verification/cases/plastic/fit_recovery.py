@@ -49,9 +49,7 @@ def recovered(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def one(noise: float, draws: np.random.Generator) -> tuple[float, float, float]:
-    """Share of the parameters in their confidence intervals, median of the half-widths over the bound of
-    Cramer and Rao, and largest relative error of the yield curve up to the largest strain.
-    """
+    """Share of parameters in their intervals, half-widths over Cramer and Rao, error of the yield curve."""
     at = draws.uniform(-INSIDE, INSIDE, 2)
     start = [bounds[1] for bounds in UNKNOWN.values()]
     true = dict(zip(UNKNOWN, start * np.exp(WIDTHS * at), strict=True))

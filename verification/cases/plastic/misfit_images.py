@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Images of plastic strain at a free surface: those of the six components of a spherical plastic zone cancel,
-and each coefficient of SAM that is wrong shows.
-"""
+"""Images of plastic strain at a free surface: those of a spherical plastic zone cancel."""
 
 from __future__ import annotations
 
@@ -25,11 +23,9 @@ POINTS = 4  # Gauss points of a cell each way, for means of the closed form
 
 @dataclass(frozen=True)
 class Images:
-    """Of a plastic zone without hardening of its own: stress over the shear modulus, lengths in radii.
-
-    parts: stress I that the surface adds because of strain J alone, (J, I, layers, nx, ny); raised:
-    displacement u_z of the surface by strain J, (J, nx, ny); stress: L2 of the stress of all of it far from
-    any surface.
+    """Of a plastic zone without hardening of its own: stress over the shear modulus, lengths in radii. parts:
+    stress I that the surface adds because of strain J alone, (J, I, layers, nx, ny); raised: displacement u_z
+    of the surface by strain J, (J, nx, ny); stress: L2 of the stress of all of it far from any surface.
     """
 
     parts: np.ndarray

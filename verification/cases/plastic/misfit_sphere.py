@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""A sphere that grows inside a yielding body: plastic strain of both models against a closed form, without
-any contact, and against each other below a free surface.
-"""
+"""A sphere that grows inside a yielding body: plastic strain of both models in closed form."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene
-from verification.cases.case import with_body, with_loading
+from verification.cases.case import DataFrame, with_body, with_loading
 from verification.cases.plastic.misfit_images import NAMES, Images, cell_means, images
 from verification.judging import Measured
 from verification.quantities import Reference
@@ -27,9 +24,7 @@ __all__ = [
     "image_xz",
     "image_zz",
     "infinite_body",
-    "l2",
     "l2_at_points",
-    "radii",
     "ray",
     "removed_mises",
     "removed_total",
@@ -38,8 +33,6 @@ __all__ = [
     "uplift",
 ]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 LAWS = {
     "linear": (0.02, {"law": "linear", "yield_stress": 1e9, "modulus": 10e9}),
@@ -164,9 +157,7 @@ image_raised = _image(len(NAMES), "Displacement of the surface by the plastic zo
 
 
 def second_order(rows: DataFrame, column: str) -> float:
-    """The largest error times the square of the cells in the radius: its sign may change between two sizes,
-    which leaves no order to fit.
-    """
+    """The largest error times the square of the cells in the radius, as its sign may change."""
     return float((rows[column].abs() * rows["sphere-cells"] ** 2).max())
 
 

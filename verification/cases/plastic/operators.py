@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The stress of plastic strain by matrices between all layers and by sweeps over them, in the same scenes;
-and what a large patch takes, which only sweeps can solve.
-"""
+"""The stress of plastic strain by matrices between all layers and by sweeps; a large patch."""
 
 from __future__ import annotations
 

@@ -4,17 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from verification.cases.case import SAM, Context, with_keys, with_loading
+from verification.cases.case import SAM, Context, DataFrame, with_keys, with_loading
 from verification.cases.recipes import Resolution, at_ratio, resolved_at
 from verification.references import contact_of
 from verification.runs.sampling import peak
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 __all__ = ["largest_excess", "shrinks"]
 
@@ -30,7 +27,6 @@ METHODS = {
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
     """Each law, method and number of load steps once; the loops of the paper need not converge in our sense.
-
     off: how far the largest plastic strain is from that of backward Euler with as many steps; excess: max
     (mises - sigma_y)/sigma_y as the certificate states it; stated: what the plane y = 0 has beyond it;
     plastic-strain: on the axis, in the fewest load steps.

@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from verification.cases.case import DataFrame
 from verification.reference.convergence import extrapolate
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 
 def limit_of_both(rows: DataFrame, column: str) -> float:
@@ -22,8 +18,6 @@ def limit_of_both(rows: DataFrame, column: str) -> float:
 
 
 def growth_of_norms(rows: DataFrame, column: str) -> float:
-    """The largest ratio of the differences on successive grids: below 1 both shrink every time. Norms, as the
-    largest values of both models may cross on the way.
-    """
+    """The largest ratio of the differences on successive grids, in norms: below 1 both shrink every time."""
     apart = rows[["peeq-axis", "peeq-plane"]].to_numpy(dtype=float)
     return float(np.max(apart[1:] / apart[:-1]))

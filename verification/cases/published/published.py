@@ -5,41 +5,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from sam.scene import Result, Scene
-from verification.cases.case import with_grid, with_keys, with_loading
+from verification.cases.case import DataFrame, with_grid, with_keys, with_loading
 from verification.cases.recipes import initial_yield
 from verification.judging import Measured
 from verification.quantities import Reference
 from verification.reference.hamilton import largest_von_mises
 from verification.reference.hertz import CircularContact
-from verification.reference.indentation import (
-    Ghaednia,
-    JacksonGreen,
-    KogutEtsion,
-    onset,
-    residual_share,
-)
+from verification.reference.indentation import Ghaednia, JacksonGreen, KogutEtsion, onset, residual_share
 from verification.references import modulus_of
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-__all__ = [
-    "area_jackson",
-    "area_kogut",
-    "farthest",
-    "load_jackson",
-    "load_kogut",
-    "sixty_depths",
-    "w_of_steps",
-    "w_star",
-    "yields_at",
-]
+__all__ = ["area_jackson", "area_kogut", "load_jackson", "load_kogut", "sixty_depths", "w_of_steps", "w_star"]
 
 LARGEST = 20.0  # w*: beyond it the two correlations part, 14 % at 110
 RESOLVED = 0.35  # contact radius over that at the largest load from which a point counts

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Faults: solves and sweeps that are killed at random moments, and what else can go wrong while a
-run writes its folder.
-"""
+"""Solves and sweeps that are killed at random moments, and what else can go wrong in a run's folder."""
 
 from __future__ import annotations
 
@@ -170,9 +168,7 @@ def undisturbed(words: Sequence[str], out: Path, store: Path) -> float:
 
 
 def kill_solves(count: int, base: Path, progress) -> tuple[list[Trial], float]:
-    """Trials of solves killed at moments uniform over the time of an undisturbed one, which is
-    returned too.
-    """
+    """Trials of solves killed at moments uniform over the time of an undisturbed one, also returned."""
     words = ["solve", str(base / "scene.toml")]
     seconds = undisturbed(words, base / "undisturbed", base / "store")
     expected = tables(base / "undisturbed")
@@ -233,9 +229,7 @@ def every(found: tuple) -> list[Trial]:
 
 
 class Faults(Case):
-    """Solves and sweeps killed, then the other faults one by one: the trials of the first two, the other
-    faults with their rows, and the seconds of an undisturbed solve.
-    """
+    """Solves and sweeps killed, the other faults with their rows, and the seconds of an undisturbed solve."""
 
     def solve(self, context: Context) -> tuple[list[Trial], list[Trial], list, float]:
         solves, sweeps = KILLS[context.level]

@@ -30,9 +30,7 @@ def needs() -> str:
 
 
 def checked(*options: str) -> dict:
-    """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks, and replaces
-    code.
-    """
+    """What `python -m verification.robustness.mutants` finds, in a process of its own: it forks."""
     with tempfile.TemporaryDirectory(prefix="samfem-mutation-") as base:
         found = Path(base, "judged.json")
         words = [sys.executable, "-m", TOOL, "--json", str(found), *options]
@@ -66,9 +64,7 @@ def values_of(found: Mapping) -> dict[str, Measured]:
 
 
 def counts_table(found: Mapping) -> SmallTable:
-    """By module how many mutants were killed of all that count, and integers of structure: all numbers of the
-    core, and what is drawn.
-    """
+    """By module how many mutants were killed of those that count: numbers of the core, and the drawn."""
     counts, kinds = Counter(), ("number", "row", "comparison", "branch")
     for mutant, one, _ in mutants_of(found):
         kind = mutant.kind.replace("count", "number")

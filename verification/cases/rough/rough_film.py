@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The film on a rough surface: the layered calculation of Bosman & Schipper (2011), Table 1 and Fig. 3, and
-where it ends.
-
-Their surface is a measurement that is not public, and they do not say against which body it is pressed: a
-synthetic patch with its roughness takes its place, under steel and under a rigid plane, and as smooth and as
-rough as the film is thick.
+"""The film on a rough surface: Bosman & Schipper (2011), Table 1 and Fig. 3. Their measured surface is not
+public, nor do they say against which body: a synthetic patch with its roughness takes its place, under steel
+and under a rigid plane, and as smooth and as rough as the film is thick.
 """
 
 from __future__ import annotations
@@ -12,22 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Result, Scene
-from verification.cases.case import SAM, Context, Plot, with_body, with_grid, with_keys
+from verification.cases.case import SAM, Context, DataFrame, Plot, with_body, with_grid, with_keys
 from verification.compare.verdicts import LIMIT, breaking_radius
 from verification.figures.maps import rough_pressures
+from verification.rows import CaseFile
 from verification.runs.sampling import pressure_map
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
-
-__all__ = ["frame", "pressure", "size", "spread"]
 
 SCENE = "rough-patch"
 GRIDS = {"quick": (64, 128), "full": (64, 128, 256, 512)}
@@ -133,9 +124,8 @@ def pressure(file: CaseFile, frame: DataFrame) -> Plot:
 
 def summit_radius(result: Result) -> float:
     """Contact radius in m of the sphere whose pressure has the curvature of the largest one here, of which p0
-    (1 - r^2/(2 a^2)).
-
-    Spots merge several summits; how far the pressure of one reaches is what a film is thick or thin against.
+    (1 - r^2/(2 a^2)). Spots merge several summits; how far the pressure of one reaches is what a film is
+    thick or thin against.
     """
     x, y, p = pressure_map(result)
     i, j = np.unravel_index(np.nanargmax(p), p.shape)

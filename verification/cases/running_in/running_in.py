@@ -1,23 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, against what the paper says
-of them: on ten surfaces with the printed inputs, and beside it in a second reading of what the
-paper leaves open; on one surface with finer cells.
-
-Rows are for what must be so: sums that agree, cycles that are complete, friction between its two
-coefficients. What the paper says of its own surface is judged in a table, beside the pressures at
-which a film fails and metal is removed, which decide it.
+"""Running-in: the five cases of Bosman & Schipper (2011), Figs. 13-17, in two readings on ten surfaces, and
+on finer cells. Rows are for what must be so: sums, complete cycles, friction between its coefficients. What
+the paper says of its own surface is judged in a table.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, View, with_grid, with_keys
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, View, with_grid, with_keys
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -38,14 +34,8 @@ from verification.figures.lines import Curve, curves, yield_profiles
 from verification.figures.running_in import six_panels
 from verification.reference.bonded_film import regime
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 PRINTED, RENEWED = "printed inputs", "renewed"
-WORDS = {
-    PRINTED: "with the printed inputs",
-    RENEWED: "weakly hardening layer, renewed counter-surface",
-}
+WORDS = {PRINTED: "with the printed inputs", RENEWED: "weakly hardening layer, renewed counter-surface"}
 """The readings on all surfaces: with its numbers, by our plastic loop, or see `renewed` -> for the reader."""
 SHOWN = 2  # the seed of the scenes
 FULL = Effort(LAST, steps=10, cells=64, seeds=tuple(range(1, 11)))
@@ -60,9 +50,7 @@ DEEP = 2e-6  # m: how far down the yield stress is drawn; the profiles end above
 
 
 def renewed(scene: Scene) -> Scene:
-    """The second reading: the layer hardens little; the counter-surface is rough and another one
-    in each cycle; layers of cells reach deeper.
-    """
+    """The second reading: a layer that hardens little, another rough counter-surface in each cycle."""
     scene = study.deeper(
         study.with_counter(study.with_layer_alpha(scene, study.LAYER_ALPHA), study.ROUGHNESS["sq"])
     )
@@ -117,9 +105,7 @@ def missing_cycles(one: Run) -> int:
 
 
 def restless_cycles(one: Run) -> int:
-    """Cycles that strain or wear the body after one that did neither, where each meets the same
-    counter-surface.
-    """
+    """Cycles that strain or wear after one that did neither, under the same counter-surface."""
     busy = (one.of_cycles("new_strain_max") != 0.0) | (one.of_cycles("wear_of_cycle_m3") != 0.0)
     return int((busy & (np.cumsum(~busy) > 0)).sum()) if alike(one) else 0
 
@@ -138,15 +124,11 @@ COUNTS: Mapping[str, Callable[[Run], int]] = {
     "added": lambda one: int((one.scar.worn < 0.0).sum()),
     "repeats": restless_cycles,
 }
-"""Row -> its number of a run, of which the row holds the largest, or the sum. Sums are over surface.csv of
-the last cycle, against cycles.csv.
-"""
+"""Row -> its number of a run, the largest or the sum, by surface.csv of the last cycle and cycles.csv."""
 
 
 class RunningIn(Readings):
-    """Every material on every surface in both readings, and what is varied of the printed inputs;
-    rows over all of them, statements over those that converged.
-    """
+    """Every material on every surface in both readings, and what is varied; statements over the converged."""
 
     def readings(self, context: Context) -> dict[str, Reading]:
         efforts = EFFORTS[context.level]
@@ -248,9 +230,7 @@ def shown_of(good: DataFrame) -> Iterator[tuple[str, str, Run]]:
 
 
 def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
-    """Material -> in Pa its strength, the pressures at which films fail and metal is removed, and the largest
-    in the first cycle, the median of the surfaces.
-    """
+    """Material -> in Pa strength, pressures at which films fail and metal goes, median peak of cycle 1."""
     values = {}
     for case, runs in runs_of(found, reading):
         own = Limits.of(runs.iloc[0].scene)
@@ -265,9 +245,7 @@ def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
 
 
 def regimes_table(found: DataFrame) -> SmallTable:
-    """What decides: the pressures at which films fail and metal is removed, against the largest
-    there is.
-    """
+    """The pressures at which films fail and metal is removed, against the largest there is."""
     rows = []
     for reading in WORDS:
         for name, own in regimes(found, reading).items():
@@ -305,9 +283,7 @@ def readings_plot(good: DataFrame) -> Plot:
 
 
 SIZES = {"1 µm": (32, 5), "0.457 µm": (70, 11)}
-"""Size of the cells -> cells along a side of 32 um, and in the window of smoothing, which is 5 um long: 12
-and 26 cells in the shortest wave of 12 um, where wear-converged asks for 24.
-"""
+"""Cells along 32 um and in the window of smoothing, 5 um: 12 and 26 cells in the shortest wave of 12 um."""
 
 
 def meshed(scene: Scene, cells: int, window: int) -> Scene:
@@ -316,9 +292,7 @@ def meshed(scene: Scene, cells: int, window: int) -> Scene:
 
 
 class RunningInCells(Readings):
-    """All materials on a quarter of the printed area, on both sizes of cells, which stand for
-    readings.
-    """
+    """All materials on a quarter of the printed area; both sizes of cells stand for readings."""
 
     def readings(self, context: Context) -> dict[str, Reading]:
         effort = Effort(LAST, steps=3, cells=32)

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against
-the cells; on how many surfaces the recommended cells give it within a tenth, and what they cost.
-
-The scar is smoothed over a length: the window has as many cells as that takes. Sizes of cells are
-those of which an odd number makes up the length, so that it is the same on all grids to the bit.
+"""Worn volume on finer cells, layers and load steps, each alone, with the surface shifted against the cells.
+The window of smoothing is a length; sizes of cells are those of which an odd number makes it up, so that it
+is the same on all grids to the bit.
 """
 
 from __future__ import annotations
@@ -11,21 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Grid, HeightMap, Result, Scene, Surface
 from sam.scene.surface import heights, mean_deviation, with_relief
-from verification.cases.case import SAM, Context, Plot, with_keys, with_loading
+from verification.cases.case import SAM, Context, DataFrame, Plot, with_keys, with_loading
 from verification.cases.running_in.study import CUBIC, LITERATURE_B, NAN, with_plasticity
 from verification.compare.running_in_measures import Scar
 from verification.figures.lines import over_cells
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
-    from verification.rows import CaseFile
+from verification.rows import CaseFile
 
 SIDE, SHORTEST, SMOOTHED = 25e-6, 8e-6, 5e-6  # m: of the patch, shortest wave, window of smoothing
 CELLS = (25, 45, 75, 135)  # along a side
@@ -43,9 +37,7 @@ TENTH = 0.1
 
 @dataclass(frozen=True)
 class Member:
-    """A run. thirds: of a cell, by which the surface is shifted along x and y; parts: of each
-    layer; force: over FORCE.
-    """
+    """A run. thirds: of a cell, the shift along x and y; parts: of a layer; force: over FORCE."""
 
     seed: int
     cells: int
@@ -62,9 +54,7 @@ class Member:
         return f"surface-{self.seed}-cells-{self.cells}" + "".join(others)
 
     def of(self, base: Scene) -> Scene:
-        """The patch: waves of SHORTEST and more on softer steel than printed, so that most
-        surfaces wear.
-        """
+        """The patch: waves of SHORTEST and more on softer steel, so that most surfaces wear."""
         surface, grid = (
             shifted(base.surface, self.seed, self.cells, self.thirds / 3),
             Grid(depths=cut(FACES, self.parts)),
@@ -80,19 +70,13 @@ VARIATIONS = {
     "steps": partial(Member, cells=VARIED_ON, steps=FINER * STEPS),
     "load": partial(Member, cells=DEFAULT, force=1.01),
 }
-"""What else is varied -> the run of a surface: layers and load steps of a third, 1 % more load; each against
-the same without.
-"""
+"""What else is varied -> the run of a surface: a third of layers or load steps, or 1 % more load."""
 LEFT = {"layers": 1 / (FINER - 1), "steps": FINER / (FINER - 1)}
-"""Share of that change which is left, of first order: of the finer layers, which are recommended, and of the
-coarser load steps, which are.
-"""
+"""Share of that change which is left, of first order: of the finer layers, of the coarser load steps."""
 
 
 def shifted(like: Surface, seed: int, cells: int, shift: float) -> Surface:
-    """The surface and its relief, shifted by so many cells along x and y: sums of waves and a
-    polynomial, evaluated elsewhere.
-    """
+    """The surface and its relief, shifted by so many cells: sums of waves and a polynomial."""
     waves = {"sq": 0.2e-6, "cutoff_long": SIDE, "cutoff_short": SHORTEST, "hurst": like.hurst}
     surface = Surface(kind="self-affine", **waves, seed=seed, anisotropy=like.anisotropy)
     x, extent = ((np.arange(cells) + 0.5 - shift) / cells - 0.5) * SIDE, (SIDE, SIDE)
@@ -174,9 +158,7 @@ def per_wave(cells: int) -> float:
 
 
 def lowering(result: Result) -> np.ndarray:
-    """What wear and plastic strain have lowered the unloaded surface by after the last cycle:
-    means over the coarsest cells, (n, n) in m.
-    """
+    """What wear and strain have lowered the unloaded surface by at last: means, (n, n) in m."""
     fields = result.grids["unloaded"]["surface"].cell_data
     lowered = np.squeeze(fields["worn_m"] + fields["uz_m"])
     share = overlaps(lowered.shape[0], COARSEST)

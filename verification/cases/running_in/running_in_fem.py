@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite
-elements.
-
-Each model removes by its own plastic strain, with a rule and a transfer of the state of its own;
-beside it the finite elements remove what SAM does, so that the transfer alone is compared.
+"""Three asperities that harden by back-stresses and wear between the cycles: SAM against finite elements.
+Each removes by its own plastic strain; beside it the finite elements remove what SAM does, so that the
+transfer of the state alone is compared.
 """
 
 from __future__ import annotations
@@ -11,21 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import lcm
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from fem_reference.spatial import WornCycle, worn_cycles
 from sam.scene import Plasticity, Result, Scene, Wear
-from verification.cases.case import SAM, Context, with_body, with_loading
+from verification.cases.case import SAM, Context, DataFrame, with_body, with_loading
 from verification.cases.recipes import cells_of_asperities, rubbed
 from verification.compare.measures import Plane, depths_compared, patch_pressure, spots
 from verification.judging import relative_l2
 from verification.runs.sampling import Tables
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 
 CELLS = (32, 48, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size
@@ -73,9 +67,7 @@ def compared(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def differences(sam: Result, fem: WornCycle, first: tuple[Tables, Tables]) -> dict[str, Any]:
-    """L2 of SAM off FEM; the strain below the spots of the first cycle, which a scar divides
-    later, the worst of them. lowered: what the heights along y = 0 have lost in m.
-    """
+    """L2 of SAM off FEM; strain: the worst spot of the first cycle. lowered: heights lost on y = 0 in m."""
     (x, _, own), (*_, other) = patch_pressure(sam.tables), patch_pressure(fem.tables)
     below, strains = (Plane.of(sam.tables), Plane.of(fem.tables)), []
     for spot in spots(*first):

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and
-whether friction changes its sign; which statements of the paper hold in which of them.
-
-Everything else has the printed inputs: materials, film, limits of strain and load. The patch has a
-quarter of the area of the printed scenes, so that all combinations take minutes; one surface, so
-that nothing is said of others.
+"""The same body under other physics: how it hardens, what presses on it from cycle to cycle, and whether
+friction changes its sign. Everything else is as printed, on a quarter of the area and on one surface, so that
+nothing is said of others.
 """
 
 from __future__ import annotations
@@ -12,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Path, Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -37,9 +34,6 @@ from verification.cases.running_in.study import (
     readings_of,
 )
 from verification.figures.lines import over_cycles
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 EFFORT = Effort(LAST, steps=3, cells=32)
 SQ = 20e-9  # m: of the counter-surface, the geometric middle of the 5 to 60 nm of ground and polished discs

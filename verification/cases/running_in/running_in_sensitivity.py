@@ -1,14 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Which of the inputs that the paper leaves open decide its statements on running-in.
-
-Every input is drawn evenly over its range, each point on another surface, and all materials are
-run at each point: shares of the points at which a statement holds are probabilities over these
-ranges. Ranges are those that the paper, the literature on this steel and the readings of its
-figures allow; within them every value counts as equally likely, and inputs as independent.
-
-The points at which most statements hold together are chosen by their result, so that they are
-fitted: how far they are from the printed inputs, what they would mean for the body, and whether
-that is plausible is said.
+"""Which of the inputs that the paper leaves open decide its statements on running-in. Each is drawn evenly
+over the range that paper and literature allow, each point on another surface: shares of the points at which a
+statement holds are probabilities over these ranges. The points at which most statements hold are chosen by
+their result, so that they are fitted; what they would mean is said.
 """
 
 from __future__ import annotations
@@ -16,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.stats import binomtest, norm
 
 from sam.scene import Scene
-from verification.cases.case import Context, Measured, Plot, SmallTable, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -38,9 +32,6 @@ from verification.cases.running_in.study import (
 )
 from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 SURFACES = 100  # seeds of surfaces count from here, and are no others'
 EFFORTS = {"quick": (4, Effort(2, 2, 24, (BULK, A))), "full": (64, Effort(LAST, 3, 64))}
@@ -147,9 +138,7 @@ load | load [N] | 0.3 | 1.2 | 0.6 | 1 | logarithm | load
 counter | roughness of the counter-surface [nm rms] | 0 | 30e-9 | 0 | 1e9 | value | counter
 window | window of smoothing [cells] | 0 | 9 | 5 | 1 | level | wear.smoothing_window
 """
-"""The fields of each input, in the order in which they are put into a scene: a law of the layer takes the
-constants of the body.
-"""
+"""The fields of each input, in the order in which they are put: a layer takes the body's constants."""
 INPUTS = tuple(
     Input(name, words, *map(float, numbers), even, key)
     for name, words, *numbers, even, key in study.parts_of(TABLE)
@@ -181,9 +170,8 @@ def wilson(held: int, of: int, level: float = 0.9) -> tuple[float, float]:
 
 def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
     """The inputs that decide a statement beyond chance, the first most. held: (points,), NaN: says nothing.
-
-    change: how much more often it holds in the upper half of an input's range than in the lower
-    one, with bounds of 90 %.
+    change: how much more often it holds in the upper half of an input's range than in the lower one, with
+    bounds of 90 %.
     """
     says, found = np.isfinite(held), []
     for share, one in zip(shares.T[:, says], INPUTS, strict=True):
@@ -197,9 +185,7 @@ def deciders(shares: np.ndarray, held: np.ndarray) -> list[dict[str, Any]]:
 
 
 def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[float, float]:
-    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873, method
-    10.
-    """
+    """Bounds of the difference of two probabilities: Newcombe, Stat. Med. 17 (1998) 873."""
     ends = [(part.mean(), *wilson(int(part.sum()), part.size, level)) for part in (high, low)]
     (p, p_low, p_high), (q, q_low, q_high) = ends
     bounds = p - q - np.hypot(p - p_low, q_high - q), p - q + np.hypot(p_high - p, q - q_low)
@@ -207,9 +193,7 @@ def change_between(high: np.ndarray, low: np.ndarray, level: float) -> tuple[flo
 
 
 def least_change(points: int) -> float:
-    """Smallest change of a probability near a half that is beyond CHANCE, between the halves of a
-    range.
-    """
+    """Smallest change of a probability near a half beyond CHANCE, between halves of a range."""
     return float(norm.isf(CHANCE / 2.0) * np.sqrt(2.0 * 0.25 / (points / 2.0)))
 
 
@@ -222,18 +206,14 @@ class Studied:
 
     @cached_property
     def held(self) -> np.ndarray:
-        """Whether a statement holds at a point, (statements, points); NaN where it says nothing
-        there.
-        """
+        """Whether a statement holds, (statements, points); NaN where it says nothing there."""
         measures = study.measured(self.frame, ["reading"]).reindex(range(len(self.shares)))
         holds = [[each.holds(value) for value in measures[each.words]] for each in STATEMENTS]
         return np.where(np.isnan(measures.to_numpy().T), np.nan, holds)
 
     @cached_property
     def chances(self) -> list[dict[str, Any]]:
-        """Of each statement: at how many points it holds, of those at which it says anything,
-        bounds of that share, and the inputs that decide it.
-        """
+        """Of each statement: points at which it holds, of how many, bounds of the share, deciding inputs."""
         found = []
         for said, row in zip(STATEMENTS, self.held, strict=True):
             holds, of, words = int(np.nansum(row)), int(np.isfinite(row).sum()), []

@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Running-in on a way: a rough pin with film and wear below a rough disc that moves on in steps of
-one cell, another stretch of it in each pass; what it costs beside the same contact at rest.
-"""
+"""Running-in on a way: a rough pin below a rough disc that moves on, another stretch in each pass."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sam.scene import Path, Result, Scene
-from verification.cases.case import SAM, Context, with_grid, with_loading
+from verification.cases.case import SAM, Context, DataFrame, with_grid, with_loading
 from verification.cases.running_in.study import outside
 from verification.runs import models
-
-if TYPE_CHECKING:
-    from pandas import DataFrame
-
 
 CELLS, STEPS, PASSES, RISES = 24, 6, 2, 3  # of the small scene: cells of 1 um, steps of one cell
 FEWER = 2  # steps of the one that goes on from the middle of a way

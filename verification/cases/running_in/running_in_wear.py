@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Wear at its limits: a smooth sphere without friction that wears; one and a rough patch that
-never do.
-"""
+"""Wear at its limits: a smooth sphere that wears; one and a rough patch that never do."""
 
 from __future__ import annotations
 
@@ -17,15 +15,11 @@ from verification.cases.running_in.study import Effort, reduced
 from verification.runs.sampling import surface_pressure
 
 LIMIT = 0.004
-"""Of a law that hardens little: on Swift steel no strain reaches the surface without friction, however small
-the limit.
-"""
+"""Of a law that hardens little: on Swift steel no strain reaches the surface without friction."""
 
 
 def runs(context: Context) -> Iterator[dict[str, Any]]:
-    """What each wears in m3, the largest strain, what the last cycle adds to it; of the scar its
-    largest differences, of the sphere with an infinite limit that to the one without wear.
-    """
+    """What each wears in m3, the largest strain, what the last cycle adds; differences of the scar."""
     sphere = sliding_scene(context.scene("plastic-linear"), 6.2, 0.0, Resolution(8, 8))
     sphere = with_loading(sphere, steps=3, unload=True, unload_steps=2, cycles=3)
     patch = reduced(context.scene("running-in-bulk"), Effort(cycles=5, steps=3, cells=32))
@@ -56,17 +50,13 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def worn_of(result: Result) -> np.ndarray:
-    """(nx, ny) worn depth in m of a smooth scene at the last peak, before the removal of the last
-    cycle.
-    """
+    """(nx, ny) worn depth in m at the last peak, before the removal of the last cycle."""
     fields = result.fields
     return surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["worn_m"])[2]
 
 
 def asymmetry(worn: np.ndarray, turned: bool = False) -> float:
-    """Largest difference to the mirrored scar, or to the one turned by 90 degrees, over the
-    largest depth; NaN without scar.
-    """
+    """Largest difference to the scar mirrored or turned by 90 degrees over the largest depth, or NaN."""
     others = (worn.T,) if turned else (worn[::-1], worn[:, ::-1])
     with np.errstate(invalid="ignore"):
         return float(np.max([np.abs(worn - other).max() for other in others]) / worn.max())

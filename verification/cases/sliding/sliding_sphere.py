@@ -1,26 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Stresses under given Hertz pressure and full-slip traction, summed over patches, against Hamilton's closed
-form.
-"""
+"""Stresses under Hertz pressure and full-slip traction, summed over patches, against Hamilton."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
 from sam.contact import stresses, von_mises
 from sam.grid import Window
-from verification.cases.case import Context
+from verification.cases.case import Context, DataFrame
 from verification.judging import Measured
 from verification.reference.hamilton import largest_von_mises, sliding_stress
 
 __all__ = ["limit_of_crossings"]
 
-if TYPE_CHECKING:
-    from pandas import DataFrame
 
 NU = 0.3
 FRICTION = (0.0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5)
@@ -33,9 +28,7 @@ PARTS = 8  # of a cell each way, for the mean traction of a cell
 
 
 def grid_of(across: int) -> tuple[np.ndarray, float]:
-    """Odd number of cells over three contact radii, `across` of them in the contact: centres and size, in
-    radii.
-    """
+    """Odd number of cells over three contact radii, `across` in the contact: centres and size, in radii."""
     h = 2.0 / across
     n = int(1.5 * across) // 2 * 2 + 1
     return (np.arange(n) - (n - 1) / 2) * h, h
@@ -81,9 +74,7 @@ def row_stresses(across: int, depths: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def crossing(across: int) -> float:
-    """The friction coefficient at which the von Mises stress of the cell on the trailing edge becomes the
-    largest of all.
-    """
+    """The friction at which the von Mises stress of the cell on the trailing edge becomes the largest."""
     (x, *edge), (_, *interior) = row_stresses(across, np.zeros(1)), row_stresses(72, INTERIOR)
     cell = np.abs(x + 1.0).argmin()
 
@@ -95,16 +86,12 @@ def crossing(across: int) -> float:
 
 
 def limit_of_root(h: np.ndarray, values: np.ndarray) -> float:
-    """Value at h = 0 of the parabola in sqrt(h) through the three finest: the traction has a vertical tangent
-    at r = a.
-    """
+    """Value at h = 0 of the parabola in sqrt(h) through the three finest: vertical tangent at r = a."""
     return float(np.polynomial.Polynomial.fit(np.sqrt(h[-3:]), values[-3:], 2)(0.0))
 
 
 def overtaking() -> float:
-    """The friction coefficient at which the largest von Mises stress moves to the edge, in the closed
-    form.
-    """
+    """The friction at which the largest von Mises stress moves to the edge, in closed form."""
 
     def lead(friction: float) -> float:
         interior, edge = largest_von_mises(1.0, 1.0, NU, friction)
@@ -114,9 +101,7 @@ def overtaking() -> float:
 
 
 def frame(context: Context) -> Iterator[dict[str, object]]:
-    """Six components at interior points at mu = 0.4, where the largest von Mises stress lies as friction
-    grows, and the friction coefficient at which the edge overtakes the interior.
-    """
+    """Six components inside at mu = 0.4, the place of the largest stress, and where the edge overtakes."""
     for n in ACROSS[context.level]:
         errors = dict(zip(COMPONENTS, interior_errors(n, 0.4), strict=True))
         yield {"sweep": "interior", "cells": n} | errors

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The process that draws, in a folder of its own: started by `offscreen`, it writes NAME.png of the
-pictures that a run has, or one of them as NAME.html.
-"""
+"""The process that draws, started by `offscreen`: NAME.png of the pictures of a run, or one as NAME.html."""
 
 from __future__ import annotations
 

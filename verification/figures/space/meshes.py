@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the pictures in space are made of: the surface, a plane y = const and the plastic zone of a
-run, as meshes in µm whose z points up.
-"""
+"""What pictures in space are made of, as meshes in µm whose z points up."""
 
 from __future__ import annotations
 
@@ -47,9 +45,7 @@ class Found:
         return section_of(self.run, surface_map(self.run))
 
     def sheet(self, state: str = PEAK) -> pv.StructuredGrid | None:
-        """The surface in a state, flat, with every field in its unit at the nodes and in the cells, RAISED
-        too where it is known; None where there is none, or nothing that says what of it to draw.
-        """
+        """The surface in a state, flat, with every field at nodes and in cells, RAISED if known, or None."""
         path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
         if not path.exists() or (self.run.model == "fem-axisymmetric" and not radius):
             return None
@@ -80,7 +76,6 @@ class Found:
 
     def plane(self, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """A column in the plane of the section up to the surface: x (nx,), depth (nz,) in µm, (nx, nz).
-
         Within half a cell of the surface, or of an interface, where there are no points, it has the value of
         the next one.
         """

@@ -49,10 +49,9 @@ def draw(
     page: bool = False,
     progress: Progress = lambda *_: None,
 ) -> dict[str, bytes]:
-    """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page.
-
-    name: this one alone; one: the first alone; progress: called twice a second. Raises CannotDrawError, or
-    FolderError for a damaged run.
+    """The pictures that the run in `folder` has: name -> the content of a PNG, or of an HTML page. name: this
+    one alone; one: the first alone; progress: called twice a second. Raises CannotDrawError, or FolderError
+    for a damaged run.
     """
     found = window()
     if found is None and not page:  # a page is drawn by the browser
@@ -69,10 +68,7 @@ def draw(
 
 
 def draw_run(folder: Path, name: str | None = None, *, progress: Progress = lambda *_: None) -> list[Path]:
-    """Draw the pictures of a finished run, or the one that is named, into its folder of figures.
-
-    Raises CannotDrawError, and then has written nothing.
-    """
+    """Draw the pictures of a finished run, or the named one. CannotDrawError: nothing was written."""
     pictures = {
         folder / FIGURES / f"{each}{IN_SPACE}.png": png
         for each, png in draw(folder, name, progress=progress).items()
@@ -116,9 +112,7 @@ def _run(arguments: list[str], environment: dict[str, str]) -> None:
 
 
 def _how(ended: subprocess.CompletedProcess[str]) -> str:
-    """How a process has failed, and what to do: a signal is that of a missing library, what the
-    process said itself is a defect of the program.
-    """
+    """How a process failed, and what to do: a signal is a missing library, words are a defect."""
     if ended.returncode < 0:
         return f"{signal.Signals(-ended.returncode).name}; {REMEDY}"
     lines = ended.stderr.strip().splitlines() or [f"exit code {ended.returncode}"]

@@ -171,9 +171,7 @@ def _load(found: Found) -> str:
 
 
 def _exaggeration(sheet: pv.StructuredGrid, height: np.ndarray) -> float:
-    """1, 2 or 5 times a power of ten: the largest by which the heights stay within RELIEF of the
-    width; 1 for a plane.
-    """
+    """1, 2 or 5 times a power of ten: the largest that keeps heights within RELIEF of the width."""
     if not np.ptp(height) > 0.0:
         return 1.0
     wanted = RELIEF * max(np.ptp(sheet.x), np.ptp(sheet.y)) / np.ptp(height)

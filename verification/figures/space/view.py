@@ -51,10 +51,9 @@ def length_unit(size: float) -> tuple[float, str]:
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn, in µm and with heights times `exaggeration`.
-
-    parts: (mesh, options of pyvista's `add_mesh`); "scalars" among them are coloured between
-    `limits`; label: of the colour bar, with the unit; box: (3, 2), the ends of the axes.
+    """What is drawn, in µm and with heights times `exaggeration`. parts: (mesh, options of pyvista's
+    `add_mesh`); "scalars" among them are coloured between `limits`; label: of the colour bar, with the unit;
+    box: (3, 2), the ends of the axes.
     """
 
     title: str

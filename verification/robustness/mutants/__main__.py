@@ -26,9 +26,8 @@ from verification.runs.threads import EVERY_LIBRARY
 
 def check(modules: Sequence[str], files: Sequence[str], progress: Callable[[str, int, int], None]) -> dict:
     """{"judged": judgements, "shown": equivalent mutants, "control": tests that fail with numbers as they are
-    and files that cannot be collected, "lost", "gone": see `frozen.compare`, "tests", "seconds"}.
-
-    modules, files: only these, if any are named.
+    and files that cannot be collected, "lost", "gone": see `frozen.compare`, "tests", "seconds"}. modules,
+    files: only these, if any are named.
     """
     from verification.robustness.mutants import frozen, judge, scope
     from verification.robustness.mutants.equivalent import show

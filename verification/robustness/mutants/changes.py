@@ -25,9 +25,7 @@ ARITHMETIC = (np.add, np.subtract, np.multiply)
 FACTOR = 1.001
 MORE = 2
 HOOK = "_perturbed_number_"
-"""Begins the names under which a rewritten module finds its `Number`; one underscore, as a class
-changes names with two.
-"""
+"""Begins the names of `Number` in a rewritten module; one underscore: a class changes those with two."""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
 OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
     one: other
@@ -68,9 +66,7 @@ class Mutant:
 
 
 class Number:
-    """An integer that is perturbed where it meets a float, and in each true division; anywhere else
-    it is itself.
-    """
+    """An integer that is perturbed where it meets a float, and in true divisions; elsewhere itself."""
 
     def __init__(self, value: int, factor: float):
         self.value, self.factor, self.met = value, factor, False
@@ -173,9 +169,7 @@ def _found(module: str, source: str, tree: ast.Module) -> list[Found]:
 
 
 def _parts(node: ast.AST) -> Iterator[tuple[ast.AST, tuple, bool]]:
-    """(part, the scope that it is in, as a tuple, whether it is an index) of what is looked at in a
-    node: no keys, decorators and annotations.
-    """
+    """(part, its scope as a tuple, whether it is an index) of a node: no keys, decorators, annotations."""
     if isinstance(node, ast.FunctionDef | ast.Lambda | ast.ClassDef):
         arguments = getattr(node, "args", None)  # a class has none
         defaults = [*arguments.defaults, *filter(None, arguments.kw_defaults)] if arguments else []

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Equivalent mutants: constants that must not change an answer, and what a perturbation of them changes in
-the numbers that small scenes return.
-"""
+"""Equivalent mutants: what a perturbation changes in the numbers that small scenes return."""
 
 from __future__ import annotations
 
@@ -86,7 +84,7 @@ PROBES: Mapping[str, Mapping[str, Mapping]] = {
     models.FEM_3D: {
         "coated sphere of hexahedra that slides": pressed(COATED, SPHERE, 0.1)
         | sliding(0.2)
-        | {"fem": {"cells_per_radius": 4, "box": 5.0}},
+        | {"fem": {"cells_per_radius": 4, "box": 5.0}}
     },
 }
 """Solver -> title -> tables of a scene."""
@@ -95,9 +93,8 @@ NO_ANSWER = ("iterations", "residual", "operator_applications")
 
 def solved(solver: str, title: str) -> dict[str, np.ndarray]:
     """All numbers of the result of a probe but its work: the quantities, and the columns of the tables but
-    those of NO_ANSWER.
-
-    The table of all residuals has a row for each iteration, and the goals that the constants set.
+    those of NO_ANSWER. The table of all residuals has a row for each iteration, and the goals that the
+    constants set.
     """
     result = models.solve(Scene.model_validate({"title": title, **PROBES[solver][title]}), solver)
     if not result.converged:
@@ -116,9 +113,7 @@ SHARES = {"_Pa": 1e-3, "_m": 1e-6, "_N": 1e-6}
 
 
 def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) -> float:
-    """Largest change of a number over the largest of its column, or over that of its unit times SHARES if
-    that is more.
-    """
+    """Largest change of a number over the largest of its column, or of its unit times SHARES."""
     if before.keys() != after.keys() or any(before[name].shape != after[name].shape for name in before):
         return np.inf
     tops = {name: np.abs(np.nan_to_num(values)).max(initial=0.0) for name, values in before.items()}
@@ -135,9 +130,7 @@ def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) ->
 
 @dataclass(frozen=True)
 class Shown:
-    """change: largest change of a number in tolerances of its solver; probes: how many of them run the
-    module.
-    """
+    """change: largest, in tolerances of the solver; probes: how many of them run the module."""
 
     mutant: Mutant
     reason: str

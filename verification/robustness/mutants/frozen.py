@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`frozen.csv`: by function, how many mutants were killed, which survived, and the tests that killed; how a
-later run differs from it.
-"""
+"""`frozen.csv`: by function what was killed and survived, and how a later run differs from it."""
 
 from __future__ import annotations
 
@@ -67,12 +65,11 @@ def write(judged: Iterable[MutantVerdict], modules: Collection[str]) -> None:
 def compare(
     judged: Iterable[MutantVerdict], there: Collection[tuple[str, str]]
 ) -> tuple[dict[str, str], list[str]]:
-    """Name of what survives unexplained -> what it is; functions of the table that are gone.
-
-    Numbers of the core are explained in `constants.csv`, the others by having survived when the table was
-    frozen. there: (module, function) of all mutants there are now. A function that is not where the table has
-    it is looked for by its name; a mutant of one that was merged into another, by its text. Modules of which
-    the table has nothing are not compared.
+    """Name of what survives unexplained -> what it is; functions of the table that are gone. Numbers of the
+    core are explained in `constants.csv`, the others by having survived when the table was frozen. there:
+    (module, function) of all mutants there are now. A function that is not where the table has it is looked
+    for by its name; a mutant of one that was merged into another, by its text. Modules of which the table has
+    nothing are not compared.
     """
     rows = {(row["module"], row["function"]): row for row in read()}
     judged, gone = list(judged), {place: row for place, row in rows.items() if place not in there}

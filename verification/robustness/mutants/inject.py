@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A mutant put into this process, whose modules are loaded: functions get other code, modules and classes
-other constants.
-"""
+"""A mutant put into this process: functions get other code, modules and classes other constants."""
 
 from __future__ import annotations
 
@@ -24,11 +22,7 @@ OWN = ("samfem", "sam", "fem_reference", "verification", "tests")
 
 
 def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Number]:
-    """Change these of one module, in this process from now on; the integers among them, which record their
-    use.
-
-    A row of a table is perturbed by itself.
-    """
+    """Change these of one module in this process; integers record their use, a table's row is one change."""
     forget(mutants[0].module)
     if mutants[0].kind == "row":
         _put_row(mutants[0], factor)
@@ -55,9 +49,7 @@ def forget(module: str = "") -> None:
 
 @functools.cache
 def living(kind: type) -> list:
-    """All objects of this kind, remembered: to be called before forking, as looking at all objects takes its
-    time.
-    """
+    """All objects of this kind, remembered: call it before forking, as looking takes its time."""
     return [thing for thing in gc.get_objects() if isinstance(thing, kind)]
 
 
@@ -89,9 +81,7 @@ def _swap_codes(file: str, compiled: CodeType) -> None:
 
 
 def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Number]) -> None:
-    """The constants of the module, run anew, wherever they are known by their name; those of its classes, and
-    defaults.
-    """
+    """The constants of the module, run anew, wherever they are known; of its classes, and defaults."""
     anew = ModuleType(module.__name__)
     vars(anew).update({"__file__": module.__file__, "__package__": module.__package__}, **numbers)
     exec(compiled, vars(anew))
@@ -113,9 +103,7 @@ def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Numbe
 
 
 def _same(value: object, old: object) -> bool:
-    """Whether a constant run anew is what it was: the members of an enumeration stay, as others ask who they
-    are.
-    """
+    """Whether a constant run anew is what it was: members of an enumeration stay as they are."""
     members = isinstance(value, tuple) and all(isinstance(each, Enum) for each in value)
     return value is old or (members and value == old)
 

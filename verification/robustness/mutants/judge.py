@@ -34,9 +34,7 @@ WORKERS = 2
 SECONDS = 1.0
 """Of processor time, with what it sets up: a test is fast below it."""
 ALONE, TOGETHER = 2 * SECONDS, 15.0
-"""Seconds of processor time that a test may take while observed, which takes longer, and all that
-one mutant meets.
-"""
+"""Processor seconds that a test may take while observed, and all that one mutant meets."""
 ASKED = 5.0
 """Seconds that the tests asked about one mutant took together while they were observed, the fastest first."""
 PARAMETERS = 100
@@ -45,9 +43,7 @@ KILLED, SURVIVED, STRUCTURE = "killed", "survived", "structure"
 
 @dataclass(frozen=True)
 class Seen:
-    """A test on its own. called: (file, first line) of each function of the changed modules that
-    ran in it; met: the integers that met a float.
-    """
+    """A test by itself. called: (file, first line) of changed functions that ran; met: integers by floats."""
 
     passed: bool
     seconds: float
@@ -57,9 +53,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class MutantVerdict:
-    """outcome: one of those above; by: the test that failed; seconds: its processor time; error:
-    its kind; asked: tests run.
-    """
+    """outcome: see above; by: the test that failed; seconds: processor time; error: kind; asked: tests."""
 
     mutant: Mutant
     outcome: str
@@ -70,9 +64,7 @@ class MutantVerdict:
 
 
 def forked(tasks: Iterable[tuple[Any, Callable[[], Any]]], seconds: float) -> Iterator[tuple[Any, Any]]:
-    """(name, what the task returned) as they end, each in a fork; None for one that died or took
-    more than `seconds` of processor time, where that is not 0.
-    """
+    """(name, answer) as tasks end, each in a fork; None: died, or took more than `seconds` (0: any)."""
     running: dict[Connection, tuple[Any, int]] = {}
     left, more = iter(tasks), True
     while more or running:
@@ -112,9 +104,7 @@ def _start(task: Callable[[], Any], seconds: float) -> tuple[Connection, int]:
 
 
 class Session:
-    """Calls `work(items)` in place of running the tests that pytest has collected; items: node id
-    -> test; failed: files that cannot be collected.
-    """
+    """Calls `work(items)` in place of running collected tests; items: node id -> test; failed: files."""
 
     def __init__(self, work: Callable[[dict[str, pytest.Item]], None]):
         self.work, self.failed = work, []
@@ -128,9 +118,7 @@ class Session:
 
 
 def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], None]) -> list[str]:
-    """Collect the tests of these files of tests/, those of the system apart, and call work(items);
-    the files that cannot be collected. RuntimeError where pytest ends otherwise.
-    """
+    """Collect tests, call work(items); the files without. RuntimeError where pytest ends otherwise."""
     from hypothesis import Phase, settings
 
     # properties draw the same examples each time, and stop at the first that fails
@@ -149,10 +137,9 @@ def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], No
 
 
 def run(item: pytest.Item, following: pytest.Item | None = None) -> tuple[bool, float, str]:
-    """Run one test with what it sets up and, unless the following one shares it, takes down:
-    whether it passed, processor seconds, kind of the error.
-
-    Without pytest's reports: to show why a test failed takes it longer than most of the tests do.
+    """Run one test with what it sets up and, unless the following one shares it, takes down: whether it
+    passed, processor seconds, kind of the error. Without pytest's reports: to show why a test failed takes it
+    longer than most of the tests do.
     """
     state, error, start = item.session._setupstate, "", time.process_time()
     item.stash[tmppath_result_key] = {}  # without it tmp_path ends in an error
@@ -180,9 +167,7 @@ def few(items: Iterable[pytest.Item]) -> dict[str, pytest.Item]:
 
 
 def uses(test: ModuleType, modules: Collection[str], tests: tuple[str, ...] = ()) -> bool:
-    """Whether a module of tests, or a helper that it imports, imports one of the modules, or a name of
-    it or of its package, `sam.scene`, say.
-    """
+    """Whether a module of tests, or a helper of it, imports one of the modules or a name of its package."""
     packages = {name.rpartition(".")[0] for name in modules if name.count(".") > 1}
     for value in list(vars(test).values()):
         owner = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None)
@@ -205,11 +190,9 @@ def prepare() -> None:
 def observe(
     modules: Sequence[str], items: Mapping[str, pytest.Item], progress: Callable[[int, int], None]
 ) -> tuple[dict[str, Seen], frozenset[Mutant], list[str]]:
-    """What each test runs and takes, without those that are slow or fail; the integers that meet a
-    float when their module is loaded; the tests that fail by the fault of the rewriting.
-
-    All modules are rewritten with every number as it is, and each test is run on its own, in a fork
-    that remembers nothing.
+    """What each test runs and takes, without those that are slow or fail; the integers that meet a float when
+    their module is loaded; the tests that fail by the fault of the rewriting. All modules are rewritten with
+    every number as it is, and each test is run on its own, in a fork that remembers nothing.
     """
     prepare()
     files = frozenset(import_module(name).__file__ for name in modules)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The questions of the first page and their answers, computed of the results: `pages.toml` says
-which rows, pairs and cells belong to which.
-"""
+"""The questions of the first page and their answers, by the rows, pairs and cells of `pages.toml`."""
 
 from __future__ import annotations
 
@@ -17,7 +15,6 @@ from typing import Any
 from verification.judging import LIMITS, RowStatus
 from verification.runs.store import short
 from verification.suite.pages.headline import headline_of
-from verification.suite.pages.older import pairs_in, times_in
 from verification.suite.pages.stored import (
     ELSEWHERE,
     LIMIT_SIGNS,
@@ -45,9 +42,7 @@ NORMALISED = " over the larger of "
 
 @dataclass(frozen=True)
 class Pair:
-    """A value of SAM and its reference, with the unit of both unsaid: what counts is their ratio;
-    gate: that holds it, None where only the case says both.
-    """
+    """A value of SAM and its reference, whose ratio counts; gate: that holds it, None without one."""
 
     case: ShownCase
     quantity: str
@@ -92,7 +87,7 @@ def pairs_of(stored: Stored) -> list[Pair]:
                 against = FEM if "FEM" in words else EXACT
                 gated.append(Pair(each, words, against, gate["value"], gate["expected"], gate))
         known = {round(pair.error, 4) for pair in gated}
-        said = pairs_in(each.case) if "data" not in each.case else each.case["data"].get("pairs", ())
+        said = each.case.get("data", {}).get("pairs", ())
         beside = (Pair(each, words, FEM, sam, fem) for words, sam, fem in said)
         found += gated + [pair for pair in beside if round(pair.error, 4) not in known]
     return [pair for pair in found if not pair.is_of(PAGES["pairs"]["singular"])]
@@ -109,9 +104,7 @@ def far(pairs: Iterable[Pair]) -> list[list[Pair]]:
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor seconds to an error of 1 % in one contact, of SAM and of the fastest finite elements (None:
-    not reached or not measured), and whether each is a bound.
-    """
+    """Processor seconds to 1 % of SAM and the fastest finite elements (or None), and whether bounds."""
 
     sam: tuple[float | None, bool]
     fem: tuple[float | None, bool]
@@ -131,8 +124,7 @@ class Cost:
 def costs_of(stored: Stored) -> list[Cost]:
     """Every contact of the case that measured times, none where it did not run."""
     costs, ran, nothing = [], stored.ran.get("work-precision"), (None, False)
-    data = ran.case.get("data", {}) if ran else {"times": ()}
-    for _, _, times in data["times"] if "times" in data else times_in(ran.case):
+    for _, _, times in ran.case.get("data", {}).get("times", ()) if ran else ():
         fem = [time for name, time in times.items() if name.startswith("FEM") and time[0]]
         costs.append(Cost(times.get("SAM", nothing), min(fem, default=nothing)))
     return costs
@@ -196,9 +188,7 @@ def largest(evidence: Evidence, words: str, *of: str) -> Iterator[Finding]:
 def value(
     evidence: Evidence, words: str, gate: str, *how: str, in_percent: bool = False
 ) -> Iterator[Finding]:
-    """The value of a gate, or its error where it has none. how: it and its tolerance are shown, with {} for
-    the number.
-    """
+    """The value of a gate, or its error. how: it and its tolerance are shown, with {} for the number."""
     shown, limit = (*how, *("{}", "")[len(how) :])
     show = percent if in_percent else lambda of: number(of, 3)
     for each, row in evidence.gates(gate):
@@ -250,9 +240,7 @@ def cell(evidence: Evidence, words: str, case: str, caption: str, *how: Any) -> 
 
 
 def times(evidence: Evidence, _: str) -> Iterator[Finding]:
-    """How many times the processor time of SAM finite elements take to the same error: the range
-    over the contacts where both reach it, and where only one does.
-    """
+    """How many times the time of SAM finite elements take to the same error, over the contacts."""
     costs = costs_of(evidence.stored)
     if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
@@ -286,9 +274,7 @@ PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
 
 @dataclass(frozen=True)
 class Answer:
-    """A row of the index. question: of `pages.toml`; cost: of the cases behind it; origin: (date,
-    commit) of each code that they ran with; cases: their names.
-    """
+    """A row of the index. question: of `pages.toml`; origin: (date, commit) of each code; cases: names."""
 
     question: Mapping
     findings: Sequence[Finding]

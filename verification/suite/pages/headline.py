@@ -214,9 +214,7 @@ def _of_inputs(chances: Mapping[str, Mapping], data: Mapping) -> Iterator[str]:
 def _row(
     words: str, verdicts: Sequence[Mapping], chance: Mapping | None, tried: Mapping | None
 ) -> tuple[str, ...]:
-    """Of the table, from the second cell on; verdicts: in each reading; chance: over the inputs; tried: under
-    other physics.
-    """
+    """Cells after the first; verdicts: in each reading; chance: over inputs; tried: other physics."""
     readings = [
         f"{each['by_median']}, {each['holds_on']} of {each['of']}"
         + f", none on {each['none_on']}" * bool(each["none_on"])

@@ -59,12 +59,7 @@ INDEX, README = "index.html", "README.md"
 ONE_FILE = "report.html"
 PICTURE = "figures/agreement"
 WORDS = {
-    "verification": {
-        "title": "Verification of samfem",
-        "lead": "",
-        "case": "Case",
-        "gate": "gate",
-    },
+    "verification": {"title": "Verification of samfem", "lead": "", "case": "Case", "gate": "gate"},
     "comparison": {
         "title": "Comparison of SAM and FEM",
         "lead": "Each scene is described once. The semi-analytical method (SAM) and finite elements (FEM) "
@@ -88,9 +83,7 @@ class Look:
     place: Path | None = None
 
     def to(self, place: str) -> str:
-        """A file of the repository as the pages link it; empty where they are elsewhere: a link would name a
-        place of the machine.
-        """
+        """A file of the repository as the pages link it; empty elsewhere: a link would name a place."""
         here = (self.place or self.folder).resolve()
         return Path(os.path.relpath(ROOT / place, here)).as_posix() if here.is_relative_to(ROOT) else ""
 
@@ -231,10 +224,9 @@ def write_report(
     stale: Mapping[str, str] | None = None,
     place: Path | None = None,
 ) -> Path:
-    """Write the pages of results into the folder of their figures; returns the one to open.
-
-    single_file: also report.html with everything inside, which is all there is of a comparison;
-    stale: name -> why a case is older than the code, which is marked; place: where the folder will stand.
+    """Write the pages of results into the folder of their figures; returns the one to open. single_file: also
+    report.html with everything inside, which is all there is of a comparison; stale: name -> why a case is
+    older than the code, which is marked; place: where the folder will stand.
     """
     alone = results.get("kind") == "comparison"
     if not alone:
@@ -245,21 +237,14 @@ def write_report(
 
 
 def _write_pages(stored: Stored, look: Look) -> None:
-    """Write index.html, README.md and a page for each group of which a case ran, in place of older pages.
-
-    report.html leads to the index, for those who look for that.
-    """
+    """Write index.html, README.md and a page for each group; report.html leads to the index."""
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
     pages = {
         f"{group['name']}.html": _group_page(group, cases, answers, stored=stored, look=look)
         for group, cases in _groups(stored)
     }
-    for name, template in (
-        (INDEX, "index.html.j2"),
-        (README, "README.md.j2"),
-        (ONE_FILE, "moved.html.j2"),
-    ):
+    for name, template in ((INDEX, "index.html.j2"), (README, "README.md.j2"), (ONE_FILE, "moved.html.j2")):
         pages[name] = _index(template, evidence, answers, look)
     remove_pages(look.folder)
     _draw(evidence, look.folder)

@@ -43,9 +43,7 @@ RED = (RowStatus.FAILED, RowStatus.UNCHECKED)
 
 @dataclass(frozen=True)
 class ShownCase:
-    """A case that ran. case, gates: as in results.json; commit, date: of the code and of the day
-    that solved it; inputs: names of its scene files.
-    """
+    """A case that ran. commit, date: of the code and day that solved it; inputs: its scene files."""
 
     case: Mapping
     gates: Sequence[Mapping]

@@ -1,17 +1,39 @@
 # SPDX-License-Identifier: MIT
-"""The energy balance of a smooth scene in the semi-analytical model.
+"""The energy balance of a body over its load steps, from quantities that either model can give.
 
-The states are those that the solver commits. Their displacements and stresses are evaluated again, all on the
-last box of cells: what the solver carries along from step to step is not used.
+The surface tractions t do the work W = integral of t . du on a body. It is stored elastically or dissipated,
+
+    W = E + D,    E = 1/2 int sigma : C^-1 : sigma dV,    D = int int sigma : d eps_p dV,                  (a)
+
+and a material of von Mises dissipates the work of its yield stress, whatever the path: D = int Phi(peeq) dV
+with Phi the integral of sigma_y from 0 to peeq (b). Back-stresses store a part W_X of the plastic work, which
+then is W_X + D, and dissipate by their recovery, see `sam.scene.yield_curve`. With sigma = sigma_t + sigma_r
+of the tractions on the elastic body and of the plastic strain, whose product has no energy (sigma_r balances
+no load), E = 1/2 int t . u_t dA - 1/2 int sigma_r : eps_p dV (c).
+
+Over finite steps W is summed by the trapezoidal rule. Summed likewise, D closes (a) at any number of steps
+where the discrete operators are reciprocal: that is an error of space alone. D by (b) is that of the
+material, which backward Euler follows to first order in the steps.
+
+In the semi-analytical model, of a smooth scene, the states are those that the solver commits. Their
+displacements and stresses are evaluated again, all on the last box of cells: what the solver carries along
+from step to step is not used. In the finite-element models, on a rigid counter-body, forces on the nodes in
+contact do the work; sums over the Gauss points give the energies. The outer boundary of the mesh moves as in
+the half-space, so that work also leaves the mesh there: it is stored in what lies beyond, which stays
+elastic. In space a half is modelled where y = 0 is a plane of symmetry.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
+import fem_reference
 import sam
+from fem_reference import Equilibrium, spatial
 from sam import Load, choose_grid, model_of
 from sam.contact import Convolution, Counters, convolution_onto
 from sam.grid import CellGrid, Window
@@ -29,15 +51,76 @@ from sam.plasticity import (
     stress_at_points,
     surface_displacement,
 )
-from sam.scene import Checkpoint, Scene, plastic_work
-from verification.energy.balance import Balance, along_path, back_energies
+from sam.scene import Checkpoint, Scene, plastic_work, step_energies, stored_energy
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Energies in J after each step, the unloaded virgin body first; all (n + 1,). force in N; approach in m;
+    work: of the surface tractions; pressing: of the force on the counter-body, integral of F d delta;
+    elastic: E; stored: the part of E that the residual stress holds, None where it is not told apart;
+    dissipated: D by (b), of back-stresses too; flowed: the plastic work D + W_X by the trapezoidal rule;
+    beyond: work on what lies outside of the mesh, zero for a half-space; back: W_X; within: plastic work of
+    stresses that vary within the cells of SAM, which the tractions do not do, as the operators take the
+    strain of a cell as uniform: an error of space.
+    """
+
+    force: np.ndarray
+    approach: np.ndarray
+    work: np.ndarray
+    elastic: np.ndarray
+    dissipated: np.ndarray
+    flowed: np.ndarray
+    beyond: np.ndarray
+    stored: np.ndarray | None = None
+    back: np.ndarray | float = 0.0
+    within: np.ndarray | float = 0.0
+
+    @property
+    def pressing(self) -> np.ndarray:
+        return along_path([self.force], [self.approach])
+
+    @property
+    def error_of_cells(self) -> float:
+        """The most that W - E is off the trapezoidal plastic work less `within`, over the largest W."""
+        missing = self.work - self.elastic - self.beyond - self.flowed + self.within
+        return float(np.abs(missing).max() / np.abs(self.work).max())
+
+    @property
+    def error_of_steps(self) -> float:
+        """The most that the plastic work is off W_X + D, over the largest W: the error of the steps."""
+        return float(np.abs(self.flowed - self.dissipated - self.back).max() / np.abs(self.work).max())
+
+    @property
+    def peak(self) -> int:
+        """The state under the largest force."""
+        return int(np.argmax(self.force))
+
+
+def along_path(forces, motions) -> np.ndarray:
+    """(n + 1,) integral of sum(f . du) up to each state by the trapezoidal rule; of (n + 1, ...) lists."""
+    total = 0.0
+    for f, u in zip(forces, motions, strict=True):
+        f, u = (np.asarray(each, dtype=float).reshape(len(each), -1) for each in (f, u))
+        total = total + np.sum((f[1:] + f[:-1]) / 2 * np.diff(u, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(total)])
+
+
+def back_energies(moduli, recovery, fields: Sequence, weights) -> tuple[np.ndarray, np.ndarray]:
+    """(n + 1,) energies of the back-stresses in each state: stored, and dissipated up to it. fields: of each
+    state plastic strain, strains of the back-stresses and peeq at points with the weights in m3.
+    """
+    spent = [0.0]
+    for (old, back, before), (new, _, now) in pairwise(fields):
+        found = step_energies(moduli, recovery, back, new - old, length=now - before)
+        spent.append(float(np.sum(weights * found.dissipated)))
+    stored = [float(np.sum(weights * stored_energy(moduli, back))) for _, back, _ in fields]
+    return np.array(stored), np.cumsum(spent)
 
 
 @dataclass(frozen=True)
 class Committed:
-    """A state: its load, pressure (nx, ny) in Pa on the full grid; material of the cells of `extent`, None
-    if elastic.
-    """
+    """A state: load, pressure (nx, ny) in Pa on the full grid; material of `extent`, None if elastic."""
 
     load: Load
     pressure: np.ndarray
@@ -45,12 +128,8 @@ class Committed:
     material: CellFields | None = None
 
 
-def balance_of(scene: Scene) -> Balance:
-    """Solve a smooth scene and balance the energy of the body.
-
-    ValueError for an elastic counter-body or a coating; RuntimeError when a step does not converge. Where the
-    pressure is given the approach is zero.
-    """
+def balance_of_sam(scene: Scene) -> Balance:
+    """Balance a smooth scene. ValueError for an elastic counter-body or film, RuntimeError unconverged."""
     elastic = scene.counterbody is not None and scene.counterbody.elastic
     if elastic or scene.loading.prescribed == "misfit-sphere" or scene.body.coating is not None:
         raise ValueError("counterbody: a rigid one on a body without coating is needed")
@@ -187,9 +266,7 @@ def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray
 
 
 def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
-    """(u_z, u_x) of the mean plane of a periodic patch by its mean plastic strain, (6, layers, nx, ny), in m:
-    the solver gives displacements about it, but the mean of the tractions does work on it.
-    """
+    """(u_z, u_x) in m of the mean plane of a periodic patch by its mean strain, (6, layers, nx, ny)."""
     e, nu = strain.mean(axis=(2, 3)), scene.body.poisson
     along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
     return -np.array([along_z @ thick, 2 * e[4] @ thick])
@@ -205,3 +282,63 @@ def _at_points(material: CellFields) -> MaterialFields:
     """The fields at the points of all cells, (..., 4, n_layers, nx, ny)."""
     shape = material.cells.shape
     return material.on(np.ones(shape, dtype=bool)).each(lambda each: each.reshape(*each.shape[:-1], *shape))
+
+
+def balance_of_fem(scene: Scene, model: str) -> Balance:
+    """Solve with "fem-axisymmetric" or "fem-3d" and balance. RuntimeError without convergence."""
+    if scene.counterbody is not None and scene.counterbody.elastic:
+        raise ValueError("counterbody: elastic, the balance of energy is of a body below a rigid one")
+    in_space = model == "fem-3d"
+    if in_space and scene.loading.prescribed:
+        raise ValueError("loading.prescribed: the balance of energy in space is of a contact")
+    built, steps = (spatial if in_space else fem_reference).load_steps(scene)
+    if not steps[-1].state.converged:
+        raise RuntimeError("a load step did not converge")
+    problem, body, material, unit = built.problem, built.body, built.problem.material, built.scales
+
+    def pressing_of(state: Equilibrium) -> np.ndarray:
+        """(size,) forces on the body in the contact."""
+        out = np.zeros(problem.size)
+        if in_space:
+            out[problem.normal] = state.multipliers
+            out[problem.along] = state.load.ratio * problem.weights * state.multipliers
+        else:
+            out += state.force * problem.prescribed
+            out[problem.normal[0]] += state.multipliers
+        return out
+
+    states, weights = [built.virgin(), *(step.state for step in steps)], body.weights
+    sides, pressing, stresses, plastic = [], [], [], []
+    elastic, dissipated, back = (np.zeros(len(states)) for _ in range(3))
+    compliance = np.linalg.inv(body.stiffness_tensor)
+    for k, state in enumerate(states):
+        strain = 0.0 if state.history is None else state.history.plastic_strain
+        stress = body.stress(state.u, strain)
+        sides.append(np.where(problem.fixed, body.internal_force(stress), 0.0))
+        pressing.append(pressing_of(state))
+        stresses.append(stress * weights)
+        plastic.append(strain * np.ones_like(stress))
+        elastic[k] = 0.5 * np.sum(np.einsum("st,seq,teq->eq", compliance, stress, stress) * weights)
+        if state.history is not None:
+            work = plastic_work(material.curve, state.history.peeq)
+            dissipated[k] = np.sum(weights * material.factor * work)
+    if material is not None and material.back_stresses:
+        found = [
+            (each.plastic_strain / material.engineering[:, None], each.back, each.peeq)
+            for each in (state.history for state in states)
+        ]
+        back, recovered = back_energies(material.back.modulus, material.back.recovery, found, weights)
+        dissipated += recovered
+    motions = [state.u for state in states]
+    newton = unit.pressure * unit.length**2
+    joule = newton * unit.displacement / (problem.share if in_space else 1.0)
+    return Balance(
+        np.array([state.force for state in states]) * newton,
+        np.array([state.approach for state in states]) * unit.displacement,
+        work=joule * along_path([pressing], [motions]),
+        elastic=joule * elastic,
+        dissipated=joule * dissipated,
+        flowed=joule * along_path([stresses], [plastic]),
+        beyond=-joule * along_path([sides], [motions]),
+        back=joule * back,
+    )
