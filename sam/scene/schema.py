@@ -205,7 +205,7 @@ class Scene(Section):
             ((repeats or line) and has("body.coating"), "body.coating", f"{either} {NOT_YET}"),
             (repeats and has("loading.path"), "loading.path", f"{either} {NOT_YET}"),
             (line and has("friction.path"), "friction.path", f"{either} {NOT_YET}"),
-            (repeats and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
+            (repeats and not line and shape != "flat", "counterbody.shape", f"with {patch}: {summits}"),
             (repeats and bordered, "grid.border", f'"free" with {patch}: it has no border'),
             (across, "grid.periodic", f'"y" with {axis} on cells along y'),
             (moves, "loading.path", f"with {axis} and a rough surface {NOT_YET}"),

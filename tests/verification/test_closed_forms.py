@@ -19,6 +19,7 @@ from verification.reference import (
     hamilton,
     hertz,
     hertz_line,
+    merwin_johnson,
     mindlin_cheng,
     point_loads,
     rounded_punch,
@@ -178,6 +179,23 @@ def test_line_contact_is_the_quadrature_of_line_forces_and_the_benchmark_of_nafe
     largest, depth = nafems.largest_von_mises(0.3)
     assert nafems.peak_pressure / largest == pytest.approx(1.794, rel=3e-4)
     assert depth / nafems.contact_radius == pytest.approx(0.704, abs=1e-3)
+
+
+def test_passes_by_merwin_and_johnson_settle_below_4_k_and_carry_the_surface_backwards_beyond():
+    """First yield at 1.7937 sqrt(3) k, on the axis 0.704 deep; Melan's 4.00 k, half a half-width deep."""
+    below, above = (
+        merwin_johnson.plastic_shear(share * 1.7937 * math.sqrt(3.0), [0.704], nu=0.3, passes=1)[1].max()
+        for share in (0.999, 1.001)
+    )
+    assert below == 0.0 < above < 2e-3  # of a free fibre 1e-3 k/G
+    depth = [0.45, 0.5, 0.55]
+    settles, flows = (
+        merwin_johnson.plastic_shear(k, depth, nu=0.3, passes=10)[1].max(axis=1) for k in (3.92, 4.08)
+    )
+    assert (np.diff(settles) < 0.0).all() and settles[-1] < 0.01 * settles[0]
+    assert flows[-1] > 0.97 * flows[-2] > 0.07
+    net, way = merwin_johnson.plastic_shear(5.0, depth, nu=0.3, passes=3)
+    assert (net > 0.5).any() and (net < way).all() and (net[-1] > 0.0).all()
 
 
 def test_axis_stress_is_the_textbook_form():

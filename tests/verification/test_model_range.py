@@ -118,6 +118,21 @@ def test_nothing_is_known_of_a_flat_punch_and_its_size_is_not_limited():
     assert model_range(found) is None
 
 
+@pytest.mark.parametrize(("ratio", "said"), [(0.04, 0), (0.2, 1)])
+@pytest.mark.parametrize("body", [ELASTIC, YIELDING], ids=["elastic", "Swift"])
+def test_below_a_cylinder_nothing_was_measured_and_that_is_said(body, ratio, said):
+    """F = pi E* length a^2/(4 R); a solved contact counts by its own half-width."""
+    modulus, cylinder = 210e9 / (1 - 0.3**2), {"shape": "cylinder", "radius": RADIUS, "length": 1e-3}
+    load = {"force": pi / 4 * modulus * 1e-3 * ratio**2 * RADIUS}
+    found = scene(body, cylinder, loading=load, grid={"cells": (33, 1)})
+    values = {"contact_half_width_m": 0.9 * ratio * RADIUS, "peeq_max": 0.1}
+    solved = Result("sam", Status.CONVERGED, values, {})
+    for stated, share in ((model_range(found), 1.0), (model_range(found, solved), 0.9)):
+        assert stated["a_over_R"] == pytest.approx(share * ratio, rel=1e-6)
+        assert len(range_lines(stated)) == said and stated["quantities"] == {}
+        assert all("not measured in plane strain" in line for line in range_lines(stated))
+
+
 @pytest.mark.parametrize(("worn", "lost"), [(0.0, []), (0.03, ["lost height 5 % of the relief"])])
 def test_a_rough_body_counts_by_its_slope_in_contact_and_its_strain(worn, lost):
     """A slope of 0.3, on cells of 1 by 2 m: a sphere at whose edge it is sqrt(2) larger."""

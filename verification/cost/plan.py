@@ -16,6 +16,7 @@ from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_o
 from verification.cost.contact import expected_contact
 from verification.runs import models
 from verification.runs.model_range import (
+    CYLINDER,
     in_a_sentence,
     model_range,
     off_in_words,
@@ -235,7 +236,7 @@ def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
     if found is None:
         return []
     outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
-    like = f"{'as of a sphere at ' * bool(found['like'])}a/R = {found['a_over_R']:.2g}"
+    like = f"{'as of a sphere at ' * (found['like'] not in ('', CYLINDER))}a/R = {found['a_over_R']:.2g}"
     like += " with yielding" * bool(hertz and found["a_over_R"] > 1.01 * hertz)
     off = off_in_words(found)
     return [*outside, *([in_a_sentence(off, like)] if off else [])]

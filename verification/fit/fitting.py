@@ -1,20 +1,27 @@
 # SPDX-License-Identifier: MIT
 """Least squares of measured tests by a model of the contact, with what they leave open.
 
-Of a test k the model gives depths d_k(theta) at the forces, or the places, of its points; it is solved on two
-grids, with half the cells and load steps (c) and as the scene says (f). What is compared with the points is
+Of a test the model gives depths d(theta) at the forces, or the places, of its points. The start is sought on
+a grid with half the cells and load steps (c), by derivatives there and Broyden's updates; the best theta then
+on that of the scene (f), with derivatives of its own: those of (c) differ where little is determined, and an
+estimate by them scatters more than they say. What is compared with the points is
 
-    d(theta) = d_c(theta) + [d_f(theta_0) - d_c(theta_0)] + zero + compliance F,                           (a)
+    d_f(theta) + zero + compliance F.                                                                  (a)
 
-with theta_0 moved to the best theta until that no longer moves. Derivatives of d_c are differences at the
-start, then Broyden's updates, and differences again at the end. With the residuals r over their standard
-deviations, J = dr/dtheta and W, far less than the inverse squares of the widths of the bounds, so that a
-variable that is not determined has a variance beyond them, the covariance is
+With the residuals r over their standard deviations, J = dr/dtheta and W, far less than the inverse squares
+of the widths of the bounds, so that a variable that is not determined has a variance beyond them, the
+covariance is
 
-    C = (J^T J + W)^-1 + sum_b (G e_b) (G e_b)^T,        G = (J^T J + W)^-1 J^T,                           (b)
+    C = (J^T J + W)^-1 + G N G^T,        G = (J^T J + W)^-1 J^T,                                       (b)
 
-where e_b is the bracket of (a), in standard deviations, on a branch b of a test and zero elsewhere: the
-numerical errors of loading and unloading of each test are taken as independent.
+N that of the numerical error over the points of a branch of a test, e = d_f - d_c in standard deviations:
+
+    N_ij = (e/K)^2 exp(-(pi m (u_i - u_j)/U)^2/2),    e^2 the mean of e_i^2, u = sqrt(x), U its range. (c)
+
+A change by half the grid is the bound of verification/uncertainty/rule.py, K = 2 standard deviations. m is
+how often e_i changes its sign on the branch: that often per U does a Gaussian process with (c) (Rice, Bell
+Syst. Tech. J. 24 (1945) 46, Eq. 3.3-11). The edge of the contact moves over elements, whose number in the
+radius goes with u, and the error of (f) passes zero at other loads than e does.
 """
 
 from __future__ import annotations
@@ -24,6 +31,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.optimize import least_squares
 from scipy.stats import norm, t as student
 
@@ -35,20 +43,21 @@ from verification.fit.solves import Answer, Answers, FitError
 CONFIDENCE = 0.9
 QUANTILE = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 ENDS = ("low", "start", "high")
-STEP = 0.1  # of the width of the bounds for a difference: a smaller one shows the moving mesh
-ROUNDS = 3  # times that theta_0 is moved, at most
-SETTLED = 0.3  # standard deviations by which the parameters may still move with theta_0
+STEP, LEAST = (
+    0.1,
+    0.02,
+)  # of the width of the bounds for a difference and an update: less shows the moving mesh
 FIRST, LATER = (
     6,
-    2,
-)  # evaluations of the coarse model before theta_0 and after each, that of the start included
+    3,
+)  # evaluations of all tests on the coarse grid, and in a round on the fine one, with the start
+ROUNDS = 3  # on the fine grid, at most; after each the noise is estimated
+SETTLED = 0.3  # standard deviations by which the parameters may still move in the last round
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
 NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
 FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))
 """(force, radius) of the further tests that are looked at, over those of the first."""
-NUMERICAL = (
-    1.0  # of the change between the grids: as the edge falls between elements, the finer may be as far off
-)
+BOUND = 2.0  # standard deviations, K of (c)
 LOOSE = 100.0  # widths of the bounds: a standard deviation that says that nothing is known
 DRAWS, SEED = 400, 1
 
@@ -69,7 +78,8 @@ class Fitted:
     sought: (p,) variables at the best fit; jacobian: of the residuals; noise_part, numerical_part: the terms
     of (b); bias: by how much small strains of a flat half-space move the variables; residuals: of each test,
     model less measured, in standard deviations, which are sigma, in m; strain, ratio: the largest plastic one
-    and a/R of all tests; settled: whether theta_0 was found; further: tests that were looked at, best first.
+    and a/R of all tests; settled: whether the last round moved little; further: tests that were looked at,
+    best first.
     """
 
     definition: Definition
@@ -137,26 +147,32 @@ class Fitted:
         values = self.values if values is None else values
         return self.definition.tests[0].at({p.name: values[p.name] for p in self.definition.of_scene})
 
-    def yield_curve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Plastic strain up to the largest reached, yield stress in Pa there, and its band, (n,) each: the
-        least and largest at CONFIDENCE, of parameters within their bounds. Of the layer, where it is sought.
+    def curve(self, values: Variables) -> tuple[np.ndarray, np.ndarray]:
+        """Plastic strain up to the largest reached, and the flow stress in tension in Pa, with back-stresses,
+        (n,) each, of parameters within their bounds. Of the layer, where it is sought.
         """
-        layer = any(".layer." in p.name for p in self.parameters)
         strain = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 40) * self.strain])
+        plasticity = self.scene(
+            {p.name: float(np.clip(values[p.name], p.low, p.high)) for p in self.parameters}
+        ).body.plasticity
+        assert plasticity is not None
+        layer = any(".layer." in p.name for p in self.parameters)
+        law = plasticity.layer if layer and plasticity.layer is not None else plasticity
+        stress, back = np.asarray(law.curve().stress(strain), dtype=float), law.back_stress()
+        for C, g in () if back is None else zip(back.modulus, back.recovery, strict=True):
+            stress = stress + (C * strain if g == 0.0 else -C / g * np.expm1(-g * strain))
+        return strain, stress
 
-        def curve(sought: np.ndarray) -> np.ndarray:
+    def yield_curve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """`curve` at the best parameters, and its band, the least and largest at CONFIDENCE, (n,) each."""
+
+        def stress(sought: np.ndarray) -> np.ndarray:
             pairs = zip(self.parameters, sought, strict=True)
-            values = {p.name: float(np.clip(p.value(x), p.low, p.high)) for p, x in pairs}
-            plasticity = self.scene(values).body.plasticity
-            assert plasticity is not None
-            law = plasticity.layer if layer and plasticity.layer is not None else plasticity
-            return np.asarray(law.curve().stress(strain), dtype=float)
+            return self.curve({p.name: float(p.value(x)) for p, x in pairs})[1]
 
         draws = np.random.default_rng(SEED).multivariate_normal(self.sought, self.covariance, DRAWS)
-        low, high = np.quantile(
-            [curve(each) for each in draws], [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2], 0
-        )
-        return strain, curve(self.sought), low, high
+        ends = [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2]
+        return *self.curve(self.values), *np.quantile([stress(each) for each in draws], ends, 0)
 
 
 def _clipped(p: Parameter, low: float, high: float) -> tuple[float, float]:
@@ -172,49 +188,52 @@ def fit(definition: Definition, answers: Answers, *, ahead: bool = True) -> Fitt
     """
     search = _Search(definition, answers)
     low, start, high = (np.array([float(p.sought(getattr(p, e))) for p in search.parameters]) for e in ENDS)
-    x, settled = search.climb(start, (low, high))
-    return search.result(x, settled=settled, ahead=ahead)
+    return search.result(*search.climb(start, (low, high)), ahead=ahead)
 
 
 @dataclass
 class _Search:
-    """sigma: of each test in m; correction: of its depths, the bracket of (a), in m."""
+    """fine: on which grid; sigma: of each test in m."""
 
     definition: Definition
     answers: Answers
+    fine: bool = False
     sigma: np.ndarray = field(init=False)
-    correction: list[np.ndarray] = field(init=False)
 
     def __post_init__(self) -> None:
         tests = self.definition.tests
         self.parameters = (*self.definition.of_scene, *self.definition.of_machine)
+        self.wide = np.array([float(p.sought(p.high) - p.sought(p.low)) for p in self.parameters])
         self.n, self.ends = len(self.definition.of_scene), np.cumsum([t.points.x.size for t in tests])[:-1]
         self.sigma = np.array([test.noise or np.abs(test.points.depth).max() / 100.0 for test in tests])
-        self.correction = [np.zeros(test.points.x.size) for test in tests]
 
-    def climb(self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, bool]:
-        """The best variables, and whether theta_0 has settled there."""
-        x, jacobian = self.best(x, bounds, self.jacobian(x), FIRST)
+    def climb(
+        self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, bool]:
+        """The best variables, the derivatives there, and whether the last round moved little."""
+        x, *_ = self.best(x, bounds, self.jacobian(x), FIRST)
+        self.fine = True
+        jacobian = self.jacobian(x)
         for _ in range(ROUNDS):
-            pairs = zip(self.depths(x, fine=True), self.depths(x), strict=True)
-            self.correction = [fine - coarse for fine, coarse in pairs]
             before, jacobian = x, jacobian * self.estimate(x)[:, None]
-            x, jacobian = self.best(x, bounds, jacobian, LATER)
-            if (np.abs(x - before) <= SETTLED * np.sqrt(np.diag(self.of_noise(jacobian)))).all():
-                return x, True
-        return x, False
+            x, jacobian, found = self.best(x, bounds, jacobian, LATER)
+            moved = np.abs(x - before)
+            tried = found or moved.any()  # else every step was refused
+            if tried and (moved <= SETTLED * np.sqrt(np.diag(self.of_noise(jacobian)))).all():
+                return x, jacobian, True
+        return x, jacobian, False
 
     def best(
         self, x: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], jacobian: np.ndarray, most: int
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The least squares with this correction, and the derivatives there by Broyden's updates."""
+    ) -> tuple[np.ndarray, np.ndarray, bool]:
+        """Least squares on this grid, the derivatives by Broyden's updates, and whether they ended."""
         last: dict[str, np.ndarray] = {}
 
         def updated(at: np.ndarray) -> np.ndarray:
             found, new = self.residuals(at), jacobian
             if last:
                 new, step = last["J"], at - last["x"]
-                if step.any():
+                if (np.abs(step) > LEAST * self.wide).any():
                     new = new + np.outer(found - last["r"] - new @ step, step) / (step @ step)
             last.update(x=at.copy(), r=found, J=new)
             return new
@@ -226,15 +245,13 @@ class _Search:
         answer = least_squares(
             lambda at: self.residuals(at + shift), inside - shift, lambda at: updated(at + shift), **how
         )
-        return answer.x + shift, updated(answer.x + shift)
+        return answer.x + shift, updated(answer.x + shift), answer.status > 0
 
-    def result(self, x: np.ndarray, *, settled: bool, ahead: bool) -> Fitted:
+    def result(self, x: np.ndarray, jacobian: np.ndarray, settled: bool, *, ahead: bool) -> Fitted:
         """The fit, with what is known of its parameters."""
-        jacobian, residuals, tests = self.jacobian(x), self.residuals(x), self.definition.tests
-        noise, parts = self.of_noise(jacobian), np.split(residuals, self.ends)
-        inverse = noise @ jacobian.T
-        moved = [inverse @ (NUMERICAL * shift) for shift in self.branches()]
-        answers = [self.answer(test, x, fine=True) for test in tests]
+        tests, noise = self.definition.tests, self.of_noise(jacobian)
+        inverse, parts = noise @ jacobian.T, np.split(self.residuals(x), self.ends)
+        answers = [self.answer(test, x) for test in tests]
         off = np.concatenate([each.off / s for each, s in zip(answers, self.sigma, strict=True)])
         fitted = Fitted(
             definition=self.definition,
@@ -242,7 +259,7 @@ class _Search:
             sought=x,
             jacobian=jacobian,
             noise_part=noise,
-            numerical_part=np.sum([np.outer(each, each) for each in moved], axis=0),
+            numerical_part=inverse @ self.numerical(x) @ inverse.T,
             bias=inverse @ off,
             residuals=tuple(parts),
             sigma=tuple(map(float, self.sigma)),
@@ -253,19 +270,19 @@ class _Search:
         further = self.further(fitted) if ahead and fitted.open_combinations else ()
         return replace(fitted, further=further)
 
-    def answer(self, test: Test, x: np.ndarray, *, fine: bool = False) -> Answer:
+    def answer(self, test: Test, x: np.ndarray) -> Answer:
         """What the model says of a test."""
         pairs = zip(self.definition.of_scene, x, strict=False)
-        return self.answers(test, {p.name: float(p.value(v)) for p, v in pairs}, fine)
+        return self.answers(test, {p.name: float(p.value(v)) for p, v in pairs}, self.fine)
 
-    def depths(self, x: np.ndarray, *, fine: bool = False) -> list[np.ndarray]:
+    def depths(self, x: np.ndarray) -> list[np.ndarray]:
         """Depths in m at the points of each test."""
-        return [self.answer(test, x, fine=fine).depths for test in self.definition.tests]
+        return [self.answer(test, x).depths for test in self.definition.tests]
 
     def residuals(self, x: np.ndarray) -> np.ndarray:
         """Model less measured depth over its standard deviation, (a)."""
-        tests = zip(self.definition.tests, self.depths(x), self.correction, self.machine(x), strict=True)
-        return self.whitened([d + c + m - test.points.depth for test, d, c, m in tests])
+        tests = zip(self.definition.tests, self.depths(x), self.machine(x), strict=True)
+        return self.whitened([d + m - test.points.depth for test, d, m in tests])
 
     def whitened(self, depths: list[np.ndarray]) -> np.ndarray:
         """Depths of all tests over their standard deviations."""
@@ -284,7 +301,7 @@ class _Search:
         """Derivatives of the residuals, (points, p), by differences; those of the machine need no solve."""
         base, rest, columns = self.depths(x), self.machine(x), []
         for k, p in enumerate(self.parameters):
-            other, step = x.copy(), STEP * float(p.sought(p.high) - p.sought(p.low))
+            other, step = x.copy(), STEP * self.wide[k]
             step *= 1.0 if p.sought(p.high) - x[k] > step else -1.0
             other[k] += step
             new, old = (self.depths(other), base) if k < self.n else (self.machine(other), rest)
@@ -293,8 +310,7 @@ class _Search:
 
     def of_noise(self, jacobian: np.ndarray) -> np.ndarray:
         """The first term of (b)."""
-        wide = np.array([float(p.sought(p.high) - p.sought(p.low)) for p in self.parameters])
-        return np.asarray(np.linalg.inv(jacobian.T @ jacobian + np.diag((LOOSE * wide) ** -2.0)))
+        return np.asarray(np.linalg.inv(jacobian.T @ jacobian + np.diag((LOOSE * self.wide) ** -2.0)))
 
     def estimate(self, x: np.ndarray) -> np.ndarray:
         """Find the standard deviations that are not given, by the residuals of their tests; at each point the
@@ -306,11 +322,17 @@ class _Search:
                 self.sigma[k] *= np.sqrt((part**2).sum() / max(part.size - x.size, 1))
         return np.repeat(before / self.sigma, [t.points.x.size for t in self.definition.tests])
 
-    def branches(self) -> list[np.ndarray]:
-        """The correction of each branch of each test over sigma, zero at the points of all others."""
-        whole, tests = self.whitened(self.correction), self.definition.tests
-        labels = np.concatenate([2 * k + test.points.unloading for k, test in enumerate(tests)])
-        return [np.where(labels == label, whole, 0.0) for label in np.unique(labels)]
+    def numerical(self, x: np.ndarray) -> np.ndarray:
+        """N of (c), (points, points)."""
+        coarse, blocks = replace(self, fine=False), []
+        changes = self.whitened(self.depths(x)) - self.whitened(coarse.depths(x))
+        for test, change in zip(self.definition.tests, np.split(changes, self.ends), strict=True):
+            for branch in filter(np.any, (~test.points.unloading, test.points.unloading)):
+                u, e = np.sqrt(test.points.x[branch]), change[branch]
+                turns = np.count_nonzero(np.diff(np.sign(e[np.argsort(u)])))
+                away = np.pi * turns * (u[:, None] - u) / (np.ptp(u) or 1.0)
+                blocks.append((e**2).mean() / BOUND**2 * np.exp(-(away**2) / 2.0))
+        return np.asarray(block_diag(*blocks))
 
     def further(self, fitted: Fitted) -> tuple[Further, ...]:
         """Further tests with forty points and the noise of the first, the best first."""
@@ -334,6 +356,3 @@ class _Search:
             wide = QUANTILE * np.sqrt(np.diag(both)[: self.n])
             found.append(Further(force, radius, tuple(map(float, wide))))
         return tuple(sorted(found, key=lambda each: max(each.half_widths)))
-
-
-ENDS = ("low", "start", "high")

@@ -76,7 +76,7 @@ def findings(fitted: Fitted) -> Iterator[str]:
                 "law is another, or the material piles up or sinks in beyond what small strains describe."
             )
     if not fitted.settled:
-        yield "The correction of the coarse grid has not settled: take more cells and load steps."
+        yield "The parameters have not settled: take more cells and load steps, or narrower bounds."
     off = fitted.bias / fitted.half_widths
     if fitted.ratio > RANGE or np.abs(off).max() > 1.0:
         worst = int(np.abs(off).argmax())

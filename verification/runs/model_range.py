@@ -6,6 +6,7 @@ at equal force, over its own a/R, in data/model_range.csv: chosen by hardening, 
 between two Poisson's ratios. Any other contact is likened to a sphere: an ellipsoid to the one of its larger
 a_i/R_i, the edge of a punch to the one of the same slope, a rough body to the one of the same rms slope in
 contact, and what yields otherwise to the one of the same plastic strain. The last three are rules of thumb.
+Below a smooth cylinder, in plane strain, nothing was measured, and that is said.
 
 Before a solve a/R is the larger of Hertz and a fully plastic contact, F = H pi a^2, H three times the yield
 stress at the strain 0.2 a/R (Tabor 1951; Johnson, Contact Mechanics (1985), section 6.3).
@@ -31,6 +32,8 @@ LARGEST, STEEPEST = 0.5, 0.58
 """a/R, and slope at the edge of a rounded punch, beyond which nothing is solved unless the scene asks for
 it."""
 LARGER = "the larger a_i/R_i"
+CYLINDER, UNMEASURED = "a cylinder", 0.05
+"""What a line contact is like, and its a/R from which on it is said that nothing was measured."""
 OUTSIDE = "outside_of_model"
 """Last column of every table, and a field of every mesh, of a contact that is: its a/R."""
 SAID = 0.01
@@ -114,6 +117,8 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     worn depth over the height of the relief, where there is wear.
     """
     values = {} if result is None else result.last_fitting or result.quantities
+    if _shape(scene) == "cylinder" and scene.patch_surface is None:
+        return _of_line(scene, values.get("contact_half_width_m"))
     likes = list(_likes(scene, result, values))
     if not likes:
         return None
@@ -138,8 +143,20 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     return out if lost is None else {**out, "lost_height": lost}
 
 
+def _of_line(scene: Scene, half_width: float | None) -> dict[str, Any]:
+    """What is known of a cylinder, whose half-width in m by Hertz is (4 F R/(pi E* length))^(1/2) (Johnson
+    4.43): a/R alone.
+    """
+    force, other = scene.loading.force, scene.counterbody
+    a = half_width or sqrt(4.0 * force * other.radius / (pi * contact_modulus(scene) * other.length))
+    nothing = {"law": "", "poisson": [], "measured_to": 0.0, "quantities": {}, "outside": False}
+    return {"a_over_R": a / other.radius, "like": CYLINDER, **nothing}
+
+
 def off_in_words(found: Mapping[str, Any]) -> str:
     """The quantities that are off by more than SAID and the uncertainty of that, and by how much."""
+    if found.get("like") == CYLINDER:
+        return "not measured in plane strain" if found["a_over_R"] > UNMEASURED else ""
     off = [
         f"{WORDS[name]} {_percent(**each)} too {'low' if each['error'] < 0.0 else 'high'}"
         for name, each in found["quantities"].items()
@@ -159,6 +176,8 @@ def in_a_sentence(off: str, about: str) -> str:
 def range_lines(found: Mapping[str, Any]) -> list[str]:
     """What is said about it: that it is outside of the model, and what is off, in one line each."""
     off, ratio, by = off_in_words(found), found["a_over_R"], found["like"]
+    if by == CYLINDER:
+        return [in_a_sentence(off, f"{by} with a/R = {ratio:.2g}")] if off else []
     like = f"{by}, as of a sphere at " if by else ""
     parts = [f"{like}a/R = {ratio:.2g}", f"measured on spheres, {found['law']}"]
     if ratio > found["measured_to"]:

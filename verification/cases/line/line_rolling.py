@@ -8,7 +8,11 @@ import numpy as np
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import with_body
 from verification.cases.recipes import initial_yield, on_track
-from verification.quantities import Reference, of_passes
+from verification.quantities import Reference, contact_of, of_passes
+from verification.reference.merwin_johnson import plastic_shear
+
+DEPTHS = np.linspace(0.3, 1.2, 46)
+"""In half-widths, of the analysis by Merwin & Johnson: the largest shear is half a half-width deep."""
 
 
 def rolls(scene: Scene, keys: dict[str, float]) -> Scene:
@@ -36,3 +40,10 @@ def sheared(scene: Scene, result: Result, _: Reference | None) -> float:
     shear = body.young / (2.0 * (1.0 + body.poisson))
     yields = initial_yield(scene) / np.sqrt(3.0) / shear
     return float(np.sqrt(3.0) * of_passes(result, "strain")[-1] / yields)
+
+
+def over_analysis(scene: Scene, result: Result, reference: Reference | None) -> float:
+    """`sheared` over what the analysis by Merwin & Johnson has for the same pass."""
+    over_shear = np.sqrt(3.0) * contact_of(scene).peak_pressure / initial_yield(scene)
+    _, ways = plastic_shear(over_shear, DEPTHS, nu=scene.body.poisson, passes=scene.loading.cycles)
+    return float(sheared(scene, result, reference) / ways[-1].max())

@@ -44,6 +44,11 @@ class Found:
         """The plane in which the run is cut."""
         return section_of(self.run, surface_map(self.run))
 
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Of a section, which is the same at every y: from where to where it is drawn along y, in m."""
+        return np.ptp(self.section.reach) * np.array([-0.5, 0.5])
+
     def sheet(self, state: str = PEAK) -> pv.StructuredGrid | None:
         """The surface in a state, flat, with every field at nodes and in cells, RAISED if known, or None."""
         path, radius = self.run.folder / FILES[state], contact_size(self.run.quantities)
@@ -56,11 +61,13 @@ class Found:
             for name, values in grid.point_data.items():
                 whole.point_data[name] = np.interp(r, grid.x, values.reshape(-1, grid.x.size)[0])
             grid = whole
-        elif grid.y.size == 1:  # a section, which is the same at every y
-            whole = pv.RectilinearGrid(grid.x, REACH * radius * np.array([-1.0, 1.0]), [0.0])
+        elif grid.y.size == 1:
+            whole = pv.RectilinearGrid(grid.x, self.ends, [0.0])
             for name, values in grid.point_data.items():
                 whole.point_data[name] = np.tile(values, 2)
             grid = whole
+        elif grid.y.size == 2:
+            grid.y = self.ends
         elif grid.y[0] == 0.0:  # half a model: the other half is its mirror image
             whole = pv.RectilinearGrid(grid.x, np.append(-grid.y[:0:-1], grid.y), [0.0])
             for name, values in grid.point_data.items():
@@ -97,14 +104,15 @@ class Found:
             return grid
         if self.run.model == "fem-plane-strain":
             x, depth, values = self.plane("peeq")
-            beside = REACH * MICRO * contact_size(self.run.quantities) * np.array([-1.0, 1.0])
-            grid = pv.StructuredGrid(*np.meshgrid(x, beside, -depth, indexing="ij"))
+            grid = pv.StructuredGrid(*np.meshgrid(x, MICRO * self.ends, -depth, indexing="ij"))
             grid["peeq"] = np.repeat(values[:, None], 2, axis=1).ravel(order="F")
             return grid
         path = self.run.folder / ("body.vtr" if self.run.model == "sam" else "fields.vtu")
         if not path.exists():
             return None
         body = _mesh(self.run.folder, path.name).copy()
+        if isinstance(body, pv.RectilinearGrid) and body.y.size == 2:
+            body.y = self.ends
         for name in set(body.cell_data.keys()) - {"peeq"}:
             del body.cell_data[name]
         return body.cell_data_to_point_data().cast_to_unstructured_grid().scale(MICRO)

@@ -22,7 +22,7 @@ from pydantic import ValidationError
 
 from sam.scene import InputError, Result, SceneError, problems
 from verification.robustness.matrix.checks import TOLERANCE, Bench, Deviation, Trial, check_of
-from verification.robustness.matrix.scenes import scene_with
+from verification.robustness.matrix.scenes import fit_with, scene_with
 from verification.runs.models import FEM, FEM_3D, SAM, ModelError
 
 RIGHT, ERROR, ABSENT, WRONG = KINDS = ("right", "error", "not applicable", "wrong")
@@ -104,8 +104,11 @@ def judge(row: Row, model: str, bench: Bench) -> Cell:
     began, scene, result, text, wrong = time.process_time(), None, None, "", ""
     found: list[Deviation] = []
     try:
-        scene = scene_with(row.changes)
-        result = bench.solve(scene, model)
+        if any(key.startswith("fit.") for key in row.changes):
+            fit_with(row.changes)
+        else:
+            scene = scene_with(row.changes)
+            result = bench.solve(scene, model)
     except ValidationError as error:
         text = "; ".join(map(str, problems(error)))
     except (SceneError, InputError, ModelError) as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The scenes of the robustness matrix: a base, and what `rows.toml` changes of it."""
+"""The scenes, and the fits, of the robustness matrix: a base, and what `rows.toml` changes of it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sam.scene import HeightMap, Scene
+from verification.fit import definition_of
 
 RADIUS, FORCE, YOUNG, POISSON = 1e-4, 0.17, 210e9, 0.3
 HERTZ = (0.75 * FORCE * RADIUS * (1 - POISSON**2) / YOUNG) ** (1 / 3)  # contact radius in m
@@ -119,3 +120,26 @@ def other(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     if scene.surface is not None:
         table["surface"] = {key: value for key, value in scene.surface if value is not None}
     return Scene.model_validate(changed(table, meant(changes)))
+
+
+def fit_with(changes: Mapping[str, Any]) -> None:
+    """A fit of E to a measured loading of the base, which Hertz gives; raises SceneError where it is refused.
+
+    take: rows of the test, in order; times, plus: name of a column -> factor, summand; rename: its new name;
+    unknown: as in a fit; the rest is of the test.
+    """
+    from pandas import DataFrame
+
+    own, share = dict(meant(changed({}, changes))["fit"]), np.linspace(0.05, 1.0, 20)
+    frame = DataFrame({"force_N": share * FORCE, "depth_m": share ** (2 / 3) * HERTZ**2 / RADIUS})
+    frame = frame.iloc[list(own.pop("take", range(20)))].reset_index(drop=True)
+    for name, factor in own.pop("times", {}).items():
+        frame[name] *= factor
+    for name, more in own.pop("plus", {}).items():
+        frame[name] += more
+    frame, unknown = (
+        frame.rename(columns=own.pop("rename", {})),
+        own.pop("unknown", {"body.young": (1e11, 4e11)}),
+    )
+    tests = [own if own.get("kind") == "depth" else {"data": frame, **own}]
+    definition_of({"scene": Scene.model_validate(BASE), "tests": tests, "unknown": unknown})
