@@ -3,7 +3,6 @@
 
 import os
 import signal
-import time
 from pathlib import Path
 
 MARKER = "SAMFEM_TEST_MARKER"
@@ -22,10 +21,6 @@ def fail(_value: float) -> float:
 
 def environment() -> dict[str, str]:
     return dict(os.environ)
-
-
-def sleep(seconds: float) -> None:
-    time.sleep(seconds)
 
 
 def die(_value: float = 0.0) -> None:

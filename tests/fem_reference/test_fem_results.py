@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from builders import MODULUS, PERFECT, RADIUS, SHAPES, SPHERE, SWIFT, hertz_force, scene as small_scene
+from builders import MODULUS, PERFECT, RADIUS, SHAPES, SPHERE, hertz_force, scene as small_scene
 from rounding import close
 
 import fem_reference
@@ -14,7 +14,6 @@ from fem_reference.common.contact import ActiveSet
 from fem_reference.common.hertz import force_of_approach
 from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 
-ALUMINIUM = {"young": 70e9, "poisson": 0.2}
 PUNCH = {"shape": "punch", "radius": RADIUS}
 
 
@@ -26,11 +25,6 @@ def scene(cells=8, counter=SPHERE, *, poisson=0.3, plasticity=None, units=(1.0, 
         loading=loading,
         fem={"cells_per_radius": cells},
     )
-
-
-def stages_left_out(made):
-    assert all(entry.reason for entry in fem_reference.left_out(made))
-    return {entry.stage for entry in fem_reference.left_out(made)}
 
 
 def test_record_is_complete():
@@ -168,16 +162,6 @@ def test_refusals_name_the_key():
                 asked(made)
     assert issubclass(fem_reference.UnsupportedScene, ValueError)
     fem_reference.check(scene(poisson=0.4999))
-
-
-def test_left_out_names_stage_and_reason():
-    mesh, plastic = "mesh of the counter-body", "return mapping and plastic history"
-    assert {mesh, plastic} <= stages_left_out(scene())
-    again = {"unloading steps", "cycles after the first"}
-    left = stages_left_out(scene(counter=SPHERE | ALUMINIUM, unload=True, cycles=2))
-    assert mesh not in left and again <= left
-    left = stages_left_out(scene(plasticity=SWIFT, unload=True, cycles=2))
-    assert mesh in left and not (again | {plastic}) & left
 
 
 # --- estimates, which set meshes ---

@@ -216,11 +216,9 @@ def moving(length, count, friction=0.0, *, back=False, turns="lifted", **keys):
 @pytest.mark.parametrize("back", [True, False])
 def test_the_steps_are_those_of_sam(turns, back):
     made = moving(3, 4, 0.2, turns=turns, back=back, unload=back, cycles=3, steps=2)
-    targets, unit, others = (
-        spatial.plan(made).schedule.targets,
-        spatial.plan(made).scales,
-        schedule_of(made).targets,
-    )
+    targets = spatial.plan(made).schedule.targets
+    unit = spatial.plan(made).scales
+    others = schedule_of(made).targets
     ours = [
         (t.cycle, t.number, t.load.x * unit.length, t.load.force * unit.force / unit.peak_force, t.load.ratio)
         for t in targets

@@ -18,7 +18,7 @@ from sam.results.snapshots import Box
 from sam.scene import HeightMap, Scene, SceneError, Status
 from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED
-from sam.scene.surface import CounterSurface, Strip, heights, with_relief
+from sam.scene.surface import CounterSurface, Strip, heights
 from sam.schedule import Load
 from sam.tribofilm.law import FilmLaw, FilmState
 from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
@@ -112,13 +112,6 @@ class TestTrack:
         assert found.middle == pytest.approx(1 + np.exp(-5.75), rel=1e-3)
         assert found.deepest == pytest.approx(2.0, rel=1e-2) and abs(found.deepest_at) < 0.02
 
-    def test_a_short_path_has_no_steady_part(self):
-        way = np.linspace(-2.0, 3.0, 11)
-        uz = np.exp(-(way**2))
-        found = Groove.of(way, uz, way > 5, 1.0, across=np.zeros(3), peak=refined_peak(way, uz))
-        assert np.isnan([found.depth, found.middle, found.transient]).all()
-        assert found.deepest == pytest.approx(1.0)
-
     def test_tables_of_a_made_track(self):
         """Cells of 1 in a box of 4 x 3 x 2 cells: stresses are means over both rows that touch the path."""
         made = np.random.Generator(np.random.PCG64(5)).normal
@@ -188,13 +181,6 @@ class TestGroove:
         unloaded = np.array(line["state"]) == "unloaded"
         np.testing.assert_array_equal(np.asarray(line["uz_m"])[unloaded], table["uz_m"])
 
-    def test_long_steps_are_warned_of(self, found):
-        assert any("steps of 0.75 contact radii" in words for words in found.warnings)
-        stages = {each.stage: each for each in sam.plan(moving(**LONG)).stages}
-        stage = stages["moving counter-body"]
-        assert "about 6 % of the groove, 18 % of the plastic strain" in stage.reason
-        assert stage.size["passes"] == 1 and stage.size["steps"] == 8 and stage.size["cells"] == [32, 8]
-
 
 def test_says_where_the_plastic_zone_left_the_grid():
     few = {"depths": tuple(A / 4 * np.arange(3))}
@@ -247,13 +233,6 @@ class TestStrip:
         shifted = [heights(over.surface, x + d, y, (27 * CELL, 28 * CELL)) for d in between]
         expected = sum(shifted) / len(shifted)
         np.testing.assert_allclose(found, expected, atol=1e-12 * np.ptp(expected))
-
-    def test_the_border_falls_off_and_stays_in_place(self):
-        falling, even = strip(COUNTER, (-6 * CELL, 0.0), (12 * CELL, 0.0), 1.0, True), strip(COUNTER)
-        one, two = (falling.at(0, (x, 0.0)) - even.at(0, (x, 0.0)) for x in (0.0, 3 * CELL))
-        np.testing.assert_allclose(one, two, atol=1e-12 * np.ptp(one))
-        flat = with_relief(np.zeros((CELLS,) * 2), (X, X), (SIDE, SIDE), 1.0)
-        np.testing.assert_allclose(one / one.min(), flat / flat.min(), atol=1e-9)
 
     def test_of_a_map_the_middle_is_taken(self):
         values = np.random.Generator(np.random.PCG64(1)).normal(size=(40, 26))

@@ -51,17 +51,6 @@ def test_converged_in_every_cell(swift4):
     assert certificate["load_error"] < 1e-12
 
 
-def test_the_force_is_that_of_the_scene_and_the_body_is_of_cells_of_the_grid():
-    small = yielding(4, loading={"steps": 1}, grid=SMALL)
-    found, grid = sam.solve(small), choose_grid(small)
-    assert found.quantities["force_N"] == pytest.approx(small.loading.force, rel=1e-9)
-    body = found.grids["peak"]["body"]
-    for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
-        first = np.abs(centres - h / 2 - faces[0]).argmin()
-        np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
-    np.testing.assert_allclose(body.z, grid.layer_faces[: len(body.z)], rtol=1e-12)
-
-
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     """Table against the law: where the axis yielded and does so at the peak, each point of a cell has its
     yield stress; the mean of their stresses is within that of their mean strain, by less than 0.2 %.
@@ -116,6 +105,9 @@ def test_unloading_in_steps_takes_equal_parts_of_the_force():
     assert [step.load.force for step in steps] == pytest.approx([0.3, 0.2, 0.1, 0.0], rel=1e-12)
 
 
+# steps that do not converge
+
+
 @pytest.mark.parametrize("stop", ["stress", "strain"])
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
     """One load step leaves the stress inside the yield surface, and a flow-rule residual of percents. Below
@@ -130,9 +122,6 @@ def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
     trial = model.problem(now.extent).step(now.state, Load(given.loading.force / 4**3))
     assert trial.converged and trial.history == (0.0,) and trial.pressure.any()
     assert not trial.plastic and not trial.increment.points.strain.size
-
-
-# steps that do not converge
 
 
 def test_a_step_too_large_is_cut(monkeypatch):

@@ -70,14 +70,6 @@ def test_spots_share_and_mean_gap_by_hand():
     assert found["contact_share"] == found["contact_area_m2"] / (8e-6) ** 2
 
 
-def test_blocks_of_depths_change_nothing(monkeypatch):
-    whole = solve(patch(32))
-    monkeypatch.setattr("sam.elastic.problem.BYTES_AT_ONCE", 1)
-    again = solve(patch(32))
-    assert again.quantities == whole.quantities
-    assert np.array_equal(column(again, "plane", "mises_Pa"), column(whole, "plane", "mises_Pa"))
-
-
 def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
     """The ends of a ridge that is cut carry more than its middle. For smooth bodies the same is an error."""
     force, side, n = 2.0, 40e-6, 64
@@ -134,15 +126,6 @@ def test_what_the_fall_off_of_the_border_makes_is_said(outside, inside, words):
     pressure[1:4, 16], pressure[16, 4:7] = outside, inside
     found = in_the_fall_off(pressure)
     assert bool(found) == bool(words) and words in found
-
-
-def test_a_tolerance_that_cannot_be_met_is_not_called_converged(monkeypatch):
-    """1e-14 is met here; a share of it is below rounding."""
-    given = patch(32, solver={"tolerance": 1e-14})
-    assert solve(given).converged
-    monkeypatch.setattr("sam.elastic.problem.REACHED", 1e-18)
-    result = solve(given)
-    assert result.status is Status.NOT_CONVERGED and "stagnated" in result.message
 
 
 # a rough counter-body

@@ -14,7 +14,7 @@ from sam.contact.box import BoxContact
 from sam.contact.convolution import Counters
 from sam.contact.operators import SurfaceOperators
 from sam.plasticity import history
-from sam.scene import FrictionMap, Status
+from sam.scene import FrictionMap
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
 from verification.cost.plan import plan
 
@@ -33,26 +33,6 @@ def surface(result, state: str, name: str) -> np.ndarray:
 def stages(scene) -> dict[str, bool]:
     """Stage -> whether it runs."""
     return {entry["stage"]: entry["runs"] for entry in plan(scene).content["models"][0]["stages"]}
-
-
-def test_a_small_patch_runs_in():
-    """Friction between the two coefficients, wear that only grows, books that close."""
-    result = solved(cycles=2)
-    cycles = result.tables["cycles"]
-    assert result.status is Status.CONVERGED and cycles["cycle"] == [1, 2]
-    assert all(0 < share < 1 for share in cycles["protected_fraction"])
-    assert 0 < cycles["wear_volume_m3"][0] <= cycles["wear_volume_m3"][1]
-    np.testing.assert_allclose(np.cumsum(cycles["wear_of_cycle_m3"]), cycles["wear_volume_m3"], rtol=1e-12)
-    assert max(cycles["margin_to_limit"]) < 1.0
-    before, worn = (surface(result, state, "worn_m") for state in ("peak", "unloaded"))
-    # sums of a few hundred numbers in another order
-    assert cycles["wear_volume_m3"] == pytest.approx([CELL * before.sum(), CELL * worn.sum()], rel=1e-13)
-    assert result.quantities["wear_volume_m3"] == cycles["wear_volume_m3"][-1]
-    assert sum(cycles["operator_applications"]) == result.cost["operator_applications"]
-    last = result.tables["history"]["note"][-1]
-    assert last.startswith("elastic: unloading in one step") and "m3 removed" in last
-    run = stages(running_in(counterbody=STEEL))
-    assert run["worn geometry"] and run["chemical film"]
 
 
 def test_a_limit_out_of_reach_is_no_wear():

@@ -167,26 +167,6 @@ def test_what_a_file_does_not_say_is_asked_for_and_never_guessed(tmp_path, name,
         rough(tmp_path, name, content and content.encode(), keys=keys)
 
 
-HEADED = b"Date;1.2.2026\nRows;96\nX;Y;Z\n" + text(names=False, sep=";", decimal=",").encode()
-SPACED = b"MAP 12 8\n\n" + text(MATRIX, False, sep=" ").replace("0.", "zero", 1).encode()
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "keys"),
-    [("h.csv", HEADED, UNIT), ("h.txt", SPACED, SIDES), ("h.npz", npz({"z": Z.T}), SIDES)],
-)
-def test_the_python_in_a_refusal_writes_a_file_that_is_read(folder, name, content, keys):
-    with pytest.raises(SceneError, match=r"This Python writes") as refusal:
-        rough(folder, name, content, keys=keys)
-    words, python = str(refusal.value).split("import ", 1)
-    exec(f"import {python}")
-    made = "heights.npy" if "heights.npy" in words else "heights.csv"
-    found = rough(folder, made, (folder / made).read_bytes(), keys=keys + HOLES).surface.path
-    assert found.missing == ("zero" in content.decode("latin-1"))
-    assert np.nanmax(np.abs(found.values - 1e-6 * Z)) < 1e-20
-    assert found.extent == pytest.approx((24e-6, 16e-6))
-
-
 # arrays
 
 

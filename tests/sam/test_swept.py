@@ -44,11 +44,9 @@ def in_waves(nu, kx, ky, z, source):
 @pytest.mark.parametrize("faces", [EVEN, GRADED], ids=["even", "graded"])
 def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
     """Quadrature over the strained layer, points of the observed one; no full space in its own layer."""
-    rng, layers, box = (
-        np.random.default_rng(0),
-        len(faces) - 1,
-        Cuboids(Lags(4, 4, 1.0, ASPECT), tuple(faces), nu),
-    )
+    rng = np.random.default_rng(0)
+    layers = len(faces) - 1
+    box = Cuboids(Lags(4, 4, 1.0, ASPECT), tuple(faces), nu)
     waves, centres, halves = rng.uniform(0.1, 3.0, (2, 2)), (faces[1:] + faces[:-1]) / 2, np.diff(faces) / 2
     x, w = np.polynomial.legendre.leggauss(12)
     z, source = (np.add(centres[:, None], np.outer(halves, at)).ravel() for at in (GAUSS, x))

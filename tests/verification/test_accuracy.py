@@ -70,9 +70,8 @@ def test_what_is_missing_is_refined_and_nothing_else(of_cells, of_steps, cells, 
     """
     result, labels = searched(asked(0.05), lambda scene: made(scene, of_cells, of_steps))
     found, entry = result.discretisation["accuracy"], result.uncertainty["peeq_max"]
-    assert (
-        found["reached"] and 0.3 * 0.05 * (cells or steps) < found["relative"] <= 0.05 and not missed(result)
-    )
+    assert found["reached"] and 0.3 * 0.05 * (cells or steps) < found["relative"] <= 0.05
+    assert not missed(result)
     assert found["relative"] == entry["relative"] and result.cost["solve_s"] == found["solves"]
     assert len(labels) == found["solves"] and len(found["attempts"]) == 1 + cells
     assert (entry["cells"][0] > 33, entry["steps"][0] > 6) == (cells, steps)
@@ -109,14 +108,6 @@ def test_a_grid_that_would_need_too_much_is_not_solved(monkeypatch, memory, long
     assert not found["reached"] and words in found["why"] and "would be next" in missed(result)
     solved = [each for each in labels if "load steps" not in each]
     assert result.discretisation["cells"][0] == max(int(each.split()[0]) for each in solved)
-
-
-def test_first_grids_that_need_too_much_are_refused(monkeypatch):
-    monkeypatch.setattr(accuracy, "memory_bytes", lambda: 1e8)
-    with pytest.raises(
-        ModelError, match=r"solver.accuracy = 0.05: 4.2 cells .* about .* of memory needed, 100 MB available"
-    ):
-        searched(asked(0.05), lambda scene: made(scene, 1.0, 0.0))
 
 
 def of_elements(scene: Scene) -> Result:
@@ -166,9 +157,8 @@ def test_what_was_not_measured_is_refused(change, more, words):
 def test_the_plan_announces_it():
     content = plan(asked(0.02)).content["models"][0]
     (stage,) = (each for each in content["stages"] if each["stage"] == "accuracy")
-    assert (
-        "2 % of peeq_max: begins with 8.23 cells" in stage["reason"] and "advice expects" in stage["reason"]
-    )
+    assert "2 % of peeq_max: begins with 8.23 cells" in stage["reason"]
+    assert "advice expects" in stage["reason"]
 
 
 def test_the_command_reaches_it(folder, samfem):

@@ -116,16 +116,6 @@ def test_table_names_method_cells_time_and_origin():
     assert elastic["rows"][0]["seconds"] == 0.05  # does not grow with its steps
 
 
-def test_a_kind_without_rows_says_so():
-    """Nothing measured; and of a path no row, but where to look instead."""
-    found = advice_of(scene("hertz-sphere"), (SAM,), ())
-    assert found["words"] == "the cost of an error was not measured for this kind of scene"
-    assert found["table"] == {"columns": [], "rows": []}
-    moving = advice_of(scene("moving-sphere"), (SAM, FEM_3D))
-    assert not moving["rows"] and not moving["table"]["rows"]
-    assert "case moving-steps" in moving["words"] and "solver.uncertainty" in moving["words"]
-
-
 def test_the_committed_table_covers_every_kind_and_error():
     rows = advice.table()
     assert {row.kind for row in rows} == {problem.kind for problem in PROBLEMS}

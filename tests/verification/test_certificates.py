@@ -11,12 +11,10 @@ import pytest
 from builders import PERFECT, scene as small_scene
 from made_results import Made, last_released, with_column, with_field
 
-import fem_reference.common.contact
 import fem_reference.spatial
 from fem_reference.common.contact import ended
 from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
-from sam.scene import FrictionMap, Status
 from sam.scene.result import stagnates, unfinished
 from verification.cases.case import Context, with_loading
 from verification.cases.certificates import certificates as case
@@ -32,8 +30,7 @@ from verification.checks import (
 from verification.checks.certificates import common, solved
 from verification.checks.material import around, back_stress, flow_of
 from verification.rows import load_rows
-from verification.runs import models
-from verification.runs.models import FEM, FEM_3D
+from verification.runs.models import FEM_3D
 
 LIMITS = {row.id.partition(".")[2]: row.tolerance for row in load_rows() if row.case == "certificates"}
 SPHERES, FILMS = ("elastic", "Swift"), ("soft film", "film, sliding")
@@ -326,24 +323,6 @@ def test_fields_of_elements_that_are_returned_wrong_are_seen(solve):
         assert spatial_checks.fields(steps, changed) > LIMITS["fem-3d-fields"]
 
 
-def test_another_coefficient_is_seen(solve):
-    given = solve(*PATCH)[0].friction.path
-    mirrored = {"path": FrictionMap(given.values[:, ::-1], given.extent)}
-    for of, other in ((SLIDING, {"coefficient": 0.2001}), (PATCH, mirrored)):
-        scene, _, records = solve(*of)
-        changed = scene.model_copy(update={"friction": scene.friction.model_copy(update=other)})
-        right, wrong = (spatial_checks.steps_of(each, records)[0].equilibrium() for each in (scene, changed))
-        assert right["friction"] < LIMITS["fem-3d-friction"] < wrong["friction"]
-
-
-def test_a_film_in_three_dimensions(solve):
-    """Elastic: its steps are taken again. With other moduli of the film there is no equilibrium."""
-    scene, *_ = solve("fem-3d", "film, sliding")
-    step = spatial_checks.steps_of(scene, [])[-1]
-    other = spatial_checks.Spatial(with_film(scene, young=1.0001), step.model, step)
-    assert other.equilibrium()["equilibrium"] > LIMITS["fem-3d-equilibrium"]
-
-
 def test_a_film_that_yields(solve):
     """Film and body flow by laws of their own, the film at its own yield stress."""
     scene, _, records = solve("fem", "film that yields")
@@ -489,12 +468,3 @@ class TestEndings:
         assert not flat.converged and "stagnated" in flat.ending and flat.iterations < 1000
         fine = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5)
         assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
-
-    @pytest.mark.parametrize("name, constant, value, status, words", [
-        ("Swift", "MAX_ITERATIONS", 2, Status.STEP_CUT_LIMIT, "ran out of iterations, 2"),
-        ("elastic", "EQUILIBRIUM", 1e-17, Status.NOT_CONVERGED, "stagnated"),
-    ])  # fmt: skip
-    def test_newtons_method(self, solve, monkeypatch, name, constant, value, status, words):
-        monkeypatch.setattr(fem_reference.common.contact, constant, value)
-        result = models.solve(solve("fem", name)[0], FEM)
-        assert result.status is status and f"Newton's method {words}" in result.message

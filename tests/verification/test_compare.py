@@ -251,9 +251,8 @@ def test_finite_elements_in_space_count_on_both_sides_and_no_stress_at_the_edge_
     edge = np.hypot(plane["x_m"] - 1.0, plane["z_m"]) < 0.25
     wrong = with_column(FEM, "plane", "mises_Pa", lambda mises: np.where(edge, 2 * mises, mises))
     name = "mises_Pa in the plane y = 0"
-    assert red(SAM, wrong, ELASTIC) == {name} and name not in red(
-        SAM, wrong, scene(counterbody=SHAPES["punch"])
-    )
+    assert red(SAM, wrong, ELASTIC) == {name}
+    assert name not in red(SAM, wrong, scene(counterbody=SHAPES["punch"]))
 
 
 def test_six_stresses_of_own_data_have_a_von_mises_stress(tmp_path):

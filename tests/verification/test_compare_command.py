@@ -55,21 +55,6 @@ def test_compare_on_coarse_meshes_fails_and_says_what_to_change(sphere_folder, s
     assert "FAILED" not in (sphere_folder / "out" / "compare.csv").read_text(encoding="utf-8")
 
 
-def test_compare_draws_both_models_and_figures_stay_while_they_show_the_same(sphere_folder, samfem):
-    (sphere_folder / "none.toml").write_text(scene_text(("0.65 N", "0 N"), add=COARSE))
-    files = {f"{name}.{kind}" for name in ("line", "axis", "history") for kind in ("png", "csv")}
-    for scene, code in (("coarse", 1), ("none", 0)):
-        shown = samfem("compare", f"{scene}.toml", "--out", "out", "--figures", code=code)
-        assert {entry.name for entry in (sphere_folder / "out" / "figures").iterdir()} == files
-        assert "out/figures/line.png" in shown.out
-    shown = samfem("compare", "none.toml", "--out", "out")
-    assert (
-        shown.err == "" and {entry.name for entry in (sphere_folder / "out" / "figures").iterdir()} == files
-    )
-    assert "--figures draws new ones" in samfem("compare", "coarse.toml", "--out", "out", code=1).err
-    assert not list((sphere_folder / "out" / "figures").iterdir())
-
-
 def test_compare_does_not_write_over_a_single_run(sphere_folder, samfem):
     samfem("solve", "coarse.toml", "--out", "out")
     assert "single run" in samfem("compare", "coarse.toml", "--out", "out", code=2).err

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The cases of repeated loads on made results: the rows that turn red when a number is wrong."""
 
-from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
@@ -10,45 +9,8 @@ import pytest
 from made_results import Made, context, red
 
 from verification.cases import all_cases
-from verification.cases.cyclic import misfit_cycles, shakedown_limits
+from verification.cases.cyclic import misfit_cycles
 from verification.references import growing_sphere
-
-IN_PLACE, SPACE = "shakedown-limits", "shakedown-limits-space"
-
-
-@dataclass(frozen=True)
-class Judged(Made):
-    """A made result with a verdict."""
-
-    verdict: dict = field(default_factory=dict)
-
-
-def judged(case: str, made, level: str = "full") -> set[str]:
-    """The red rows of a case whose runs are those of made(model, scene)."""
-    solver = context(case, Path(), level)
-    solver.solve = lambda model, scene, label, demand=True: made(model, scene)
-    return red(case, all_cases()[case].measure(all_cases()[case].solve(solver)), whole=True)
-
-
-def strained(*strain: float, verdict: str = "alternating") -> Judged:
-    return Judged(tables={"cycles": {"peeq_step_max": (1e-2, *strain)}}, verdict={"class": verdict})
-
-
-@pytest.mark.parametrize("wrong", [False, True])
-@pytest.mark.parametrize("case", [IN_PLACE, SPACE])
-def test_shakedown_limits(case, wrong):
-    """Strains on both sides of the limit of the load without friction, in space those of finite elements."""
-
-    def made(model, scene):
-        shear = scene.body.plasticity.yield_stress / np.sqrt(3.0)
-        below = scene.loading.p0 < shakedown_limits.limit_of(scene) * shear
-        if wrong and (model != "sam" if case == SPACE else scene.friction is None):
-            return strained(*((1e-4, 1e-5) if below else (1e-3, 0.97e-3)), verdict="settling")
-        return strained(1e-8, 0.0, verdict="shakedown") if below else strained(1e-3, 1e-3)
-
-    seen = {IN_PLACE: "settles-0 steady-0 class-0", SPACE: "fem-settles fem-steady fem-below fem-above"}
-    assert judged(case, made) == (set(seen[case].split()) if wrong else set())
-
 
 exact_cycles = cache(misfit_cycles.cycled_sphere)
 """Each is asked for by both models and by the case."""
@@ -82,7 +44,10 @@ def test_misfit_sphere_in_cycles(wrong, monkeypatch):
     seen = (
         "sam-af-5-peeq fem-af-5-strain fem-prager-5-peeq sam-prager-5-class sam-near-2-told fem-near-1-told"
     )
-    assert judged("misfit-cycles-near", made) == ({*seen.split(), "ratchetting"} if wrong else set())
+    name, solver = "misfit-cycles-near", context("misfit-cycles-near", Path(), "full")
+    solver.solve = lambda model, scene, label, demand=True: made(model, scene)
+    found = red(name, all_cases()[name].measure(all_cases()[name].solve(solver)), whole=True)
+    assert found == ({*seen.split(), "ratchetting"} if wrong else set())
 
 
 def test_the_exact_solution_of_a_period_is_that_of_the_closed_form():

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 import pyvista
-from builders import PERFECT, running_in, scene as small_scene
+from builders import PERFECT, scene as small_scene
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 
 from sam.scene import HeightMap, Scene
@@ -138,28 +138,3 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
             assert mesh.compute_cell_sizes()["Volume"].min() > 0.0  # of an element turned inside out: below
         for values in (*mesh.point_data.values(), *mesh.cell_data.values()):
             assert np.isfinite(values).all()
-
-
-def test_the_surface_after_each_cycle_is_listed_in_order_and_adds_up(tmp_path):
-    """The volume below each surface is that of cycles.csv; the last cycle ends with the unloaded state."""
-    scene = running_in(cycles=3)
-    write_run(models.solve(scene, models.SAM), scene, tmp_path, {})
-    steps = pyvista.PVDReader(tmp_path / "run.pvd")
-    of_surface = [(each.time, each.path) for each in steps.datasets if each.path.startswith("surface")]
-    assert of_surface == [
-        (1.0, "surface-cycle-1.vtr"),
-        (2.0, "surface-cycle-2.vtr"),
-        (2.5, "surface.vtr"),
-        (3.0, "surface-unloaded.vtr"),
-    ]
-    meshes = [pyvista.read(tmp_path / name) for _, name in of_surface if name != "surface.vtr"]
-    areas = [mesh.compute_cell_sizes()["Area"] for mesh in meshes]
-    volumes = [float((mesh["worn_m"] * area).sum()) for mesh, area in zip(meshes, areas, strict=True)]
-    table = read_run(tmp_path).tables["cycles"]
-    assert volumes == pytest.approx(table["wear_volume_m3"].to_numpy(), rel=1e-9)
-    assert 0.0 < volumes[0] < volumes[-1]
-    for mesh in meshes:
-        np.testing.assert_array_equal(mesh["height_m"], meshes[0]["height_m"])
-        assert all(np.isfinite(values).all() for values in mesh.cell_data.values())
-    write_run(models.solve(running_in(cycles=1), models.SAM), running_in(cycles=1), tmp_path, {})
-    assert not list(tmp_path.glob("surface-cycle-*"))  # those of the older run are gone

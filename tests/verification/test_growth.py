@@ -32,9 +32,8 @@ def test_a_power_is_found():
 def test_a_power_needs_three_points_in_its_range():
     assert fit_power(CELLS, CELLS, first=4e3).first == 4e3
     bent = fit_power(CELLS[:3], CELLS[:3] * [1.0, 1.2, 1.0])
-    assert bent.exponent == pytest.approx(1.0) and bent.error == pytest.approx(
-        np.log(1.2) / np.log(4.0) / np.sqrt(3.0)
-    )
+    assert bent.exponent == pytest.approx(1.0)
+    assert bent.error == pytest.approx(np.log(1.2) / np.log(4.0) / np.sqrt(3.0))
     for x, y, first in (
         (CELLS[:2], CELLS[:2], 0),
         (CELLS[[0, 1, 1]], CELLS[:3], 0),
@@ -80,18 +79,6 @@ def test_back_stresses_count_by_what_they_add_at_one_per_cent():
     for law, expected in ((PERFECT, 0.0), (PERFECT | {"kinematic": kinematic}, added)):
         found = estimates._back_hardening(scene(body={"plasticity": law}), np.array([1e-6, 2e-6]))
         assert found == pytest.approx(expected, rel=1e-13)
-
-
-def test_factors_are_found_from_counts():
-    counts = [{"a": a, "b": b} for a, b in np.random.default_rng(1).uniform(1e6, 1e8, (8, 2))]
-    measured = [5 * each["a"] + 2 * each["b"] for each in counts]
-    assert growth.fitted(counts, measured, 1.0, {}) == pytest.approx({"a": 5.0, "b": 2.0}, rel=1e-6)
-    ladders = ("axisymmetric", "axisymmetric, plastic", "axisymmetric, steps")
-    rungs = [rung for name in ladders for rung in growth.FAMILIES[name]()]
-    work = [estimates.counted(rung.scene, FEM) for rung in rungs]
-    taken = [{"model": FEM, "memory": 7.0 * c.bytes["unknowns"], "cpu-s": c.work["factors"]} for c in work]
-    memory, seconds = growth.factors(rungs, taken)
-    assert memory[FEM]["unknowns"] == pytest.approx(7.0) and seconds[FEM]["factors"] == pytest.approx(1.0)
 
 
 def test_every_count_has_a_factor():
@@ -193,10 +180,8 @@ def test_both_codes_solve_the_published_scene_in_turns_and_a_loss_is_named(tmp_p
     git("commit", "--quiet", "--message", "published")
     cli.write_text(PROGRAM.format(log=str(log), name="new ", memory=125 * 10**6, code=0))
     (root / "verification/scenes/small.toml").write_text("cells = 10\n")
-    head, growing = (
-        git("rev-parse", "HEAD"),
-        {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}},
-    )
+    head = git("rev-parse", "HEAD")
+    growing = {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}}
     broken_off = {"name": "published-code", "tables": [], "reused": None}
     report.write_text(json.dumps({"provenance": {"commit": head}, "cases": [growing, broken_off]}))
     assert published_code.published() == "0" * 40 and "with its history" in published_code.missing()

@@ -15,10 +15,7 @@ from verification.runs.files import plain
 from verification.suite.pages import write_report
 from verification.suite.pages.headline import (
     COLUMNS,
-    INPUTS,
     MEANING,
-    NOT_RUN,
-    PHYSICS,
     READINGS,
     WORDS,
     headline_of,
@@ -108,16 +105,3 @@ def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(
     assert found.answer[:80] in index.text and MEANING[:40] not in index.text
     places = [page.text.index(words[:40]) for words in (found.answer, found.depends, MEANING)]
     assert sorted(places) == places and places[-1] < page.text.index("Gate closest to its tolerance")
-
-
-def test_a_study_that_did_not_run_is_said_not_to_have_run(readings, studies):
-    found = headline_of(read_stored(stored(readings)))
-    assert all(f"(case {name}) did not run." in found.depends for name in (INPUTS, PHYSICS))
-    assert {row[4] for row in found.rows} == {row[6] for row in found.rows} == {NOT_RUN}
-    assert headline_of(read_stored(stored())) is None
-    short = record(INPUTS, {})
-    assert headline_of(read_stored(stored(short))) is None
-    assert "was made without" in headline_of(read_stored(stored(readings, short))).depends
-    (_, of_physics) = studies
-    found = headline_of(read_stored(stored(of_physics)))
-    assert {row[2] for row in found.rows} == {NOT_RUN} and len(found.rows) == len(STATEMENTS)

@@ -9,11 +9,9 @@ from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
 
 import sam
 from sam.scene import Result, Scene, Status
-from verification.figures.space import offscreen
 from verification.runs import models
-from verification.runs.files import read_run, read_summary
-from verification.runs.meshes import mesh_names
-from verification.runs.model_range import OUTSIDE, model_range, range_lines, with_range
+from verification.runs.files import read_summary
+from verification.runs.model_range import model_range, range_lines, with_range
 from verification.runs.models import ModelError
 
 ELASTIC, YIELDING = {}, {"plasticity": SWIFT}
@@ -174,22 +172,3 @@ def test_what_only_the_solution_shows_ends_in_a_status_or_goes_on_marked(folder,
         summary["quantities"]["contact_radius_m"] / RADIUS
     )
     assert "outside of the model: a/R = 0.5" in said.err and ("beyond_model = true" in said.err) == bool(code)
-
-
-def test_every_file_and_figure_says_that_a_contact_is_outside_of_the_model(folder, samfem, monkeypatch):
-    monkeypatch.setattr(offscreen, "window", lambda: None)  # no pictures in space: they have no table
-    beyond = scene_text().replace("0.65 N", "5 kN") + "[grid]\ncells = [33, 33]\n"
-    (folder / "far.toml").write_text(beyond)
-    for command in ("plan", "solve"):
-        assert "loading.force = 5000 N, allowed" in samfem(command, "far.toml", code=2).err
-    assert not (folder / "far-sam").exists()
-    (folder / "far.toml").write_text(beyond + "[solver]\nbeyond_model = true\n")
-    assert "outside of the model: a/R = 1.14" in samfem("plan", "far.toml").out
-    samfem("solve", "far.toml", "--figures")
-    run, place = read_run(folder / "far-sam"), folder / "far-sam"
-    assert all(set(table[OUTSIDE].round(2)) == {1.14} for table in run.tables.values())
-    assert len(run.tables) >= 4 and run.model_range["outside"]
-    meshes = [name for name in mesh_names() if (place / name).is_file() and not name.endswith(".pvd")]
-    assert len(meshes) >= 2 and all(OUTSIDE.encode() in (place / name).read_bytes() for name in meshes)
-    tables = list((place / "figures").glob("*.csv"))
-    assert tables and all(OUTSIDE in table.read_text().splitlines()[0] for table in tables)

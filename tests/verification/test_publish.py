@@ -119,33 +119,6 @@ def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, publi
     assert [report_in(tmp_path)[key] for key in ("cases", "gates")] == [before["cases"], before["gates"]]
 
 
-def test_one_case_of_other_code_runs_again_beside_what_stays_and_a_kill_loses_nothing(
-    tmp_path, published, monkeypatch
-):
-    before = run(tmp_path)
-    place = tmp_path / "out" / "results.json"
-    results = report_in(tmp_path)
-    results["cases"][1]["code"] = results["cases"][2]["code"] = "of other code"
-    del results["cases"][2]["inputs"]  # of an older format
-    place.write_text(json.dumps(results))
-    published.runs.clear()
-    where = {"level": "full", "out": tmp_path / "out", "workers": 2}
-    with monkeypatch.context() as killed:
-        killed.setattr(verify, "finish", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            publishing.publish([NAMES[1]], store=tmp_path / "new", **where)
-    assert report_in(tmp_path) == results  # the report of before stays
-    assert publishing.publish([NAMES[1]], store=tmp_path / "newer", **where) == 0
-    assert published.runs == 2 * [NAMES[1]]  # the third is older too, and was not asked for
-    codes = [case["code"] for case in report_in(tmp_path)["cases"]]
-    assert codes[0] == codes[1] != codes[2] == "of other code"
-    assert run(tmp_path, store="newer") == before and published.runs[2:] == [NAMES[2]]
-
-
-def interrupted(*arguments, **keys):
-    raise KeyboardInterrupt
-
-
 class Shared(Case):
     """A case of hours, of which scenes may be solved ahead."""
 

@@ -3,9 +3,7 @@
 
 import errno
 import json
-import time
 from dataclasses import replace
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -21,8 +19,7 @@ from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
 from verification.runs.files import FolderError
-from verification.suite import forecast, verify
-from verification.suite.forecast import Cost
+from verification.suite import verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -172,21 +169,6 @@ def test_a_full_disk_ends_the_report_in_one_error(tmp_path, monkeypatch, capsys)
     assert "no folder that can be written to" in capsys.readouterr().err
 
 
-def test_the_time_that_is_left_is_at_the_pace_of_the_cases_that_ended(monkeypatch):
-    clock = SimpleNamespace(now=0.0)
-    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
-    ahead = forecast.Forecast({"one": Cost(30.0), "two": Cost(100.0), "three": Cost(10.0)}, began=0.0)
-    assert ahead.left == ", about 2.3 min left"
-    clock.now = 90.0  # at half the pace, as (30 + 90) / (30 + 30)
-    ahead.ended("one")
-    clock.now += 50.0
-    assert ahead.left == ", about 2.8 min left"
-    clock.now += 500.0  # longer than predicted
-    assert ahead.left == ", about 20 s left"
-    unknown = forecast.Forecast({"one": Cost()})
-    assert (unknown.left, unknown.words) == ("", "Time and disk: not known.")
-
-
 def page_of(out, name="other.html"):
     return PageReader((out / name).read_text(encoding="utf-8"))
 
@@ -218,14 +200,6 @@ def test_junit_has_one_testcase_a_gate(tmp_path):
     held = {s.get("name"): [len(s), *(len(s.findall(f"testcase/{kind}")) for kind in kinds)] for s in suites}
     assert held == said
     assert said == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}
-
-
-def test_value_that_is_no_number_is_null_and_an_empty_cell(tmp_path):
-    run(tmp_path / "out", "bad")
-    gate = next(gate for gate in results(tmp_path / "out")["gates"] if gate["id"] == "bad.one")
-    assert gate["value"] is None and gate["error"] is None
-    table = (tmp_path / "out" / "gates.csv").read_text(encoding="utf-8")
-    assert '\nbad.one,bad,"quantity one, FEM",relative,,1.0,,,0.1,failed' in table
 
 
 def test_rebuild_writes_the_same_page_without_running(tmp_path, monkeypatch):
@@ -278,9 +252,8 @@ def test_a_file_of_own_rows_is_verified_by_the_same_rules(tmp_path, monkeypatch,
         arguments = [str(tmp_path / "my-contact.toml"), "--no-store", "--out", str(tmp_path / "out")]
         assert main(["verify", *arguments]) == code
         (gate,) = results(tmp_path / "out")["gates"]
-        assert (
-            gate["id"] == "my-contact.sam-p-max" and gate["kind"] == "published" and gate["expected"] == value
-        )
+        assert gate["id"] == "my-contact.sam-p-max" and gate["kind"] == "published"
+        assert gate["expected"] == value
     capsys.readouterr()
     for old, new, said in (
         ('p-max = ["', 'pmax = ["', "rows.sam/published.pmax"),

@@ -177,11 +177,6 @@ MAPS = [(name, *MISES) for name in ("sphere", "punch", "coated", "travelling")] 
 MAPS += [("worn", *PEEQ)]
 
 
-def test_the_displacement_into_the_body_points_down():
-    pressure, displacement, gap = drawn("sphere")["line"].figure.axes
-    assert displacement.yaxis_inverted() and not (pressure.yaxis_inverted() or gap.yaxis_inverted())
-
-
 class TestPlane:
     @pytest.mark.parametrize("name, figure, quantity, unit", MAPS)
     def test_writes_the_largest_value_that_it_draws(self, name, figure, quantity, unit):
@@ -216,9 +211,3 @@ class TestCoated:
             both = known[1:] & known[:-1]
             assert not ((z[:-1] < film * (1 - 1e-9)) & (z[1:] >= film * (1 - 1e-9)) & both).any()
             assert (z[known] < film * (1 - 1e-9)).any() and (z[known] > film).any()
-
-
-def test_without_force_there_is_no_map(tmp_path):
-    scene = Scene(**SCENES["sphere"] | {"loading": {"force": 0.0}})
-    write_run(models.solve(scene, models.SAM), scene, tmp_path, {})
-    assert set(drawings_of(read_run(tmp_path))) == {"history", "line"}

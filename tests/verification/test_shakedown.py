@@ -32,9 +32,8 @@ def test_the_limit_is_that_of_the_largest_shear(friction, alternates, depth):
 def test_in_place_the_limit_is_twice_first_yield():
     """First yield at 1.6128 yield stresses for nu = 0.3; friction moves the worst point off the axis."""
     limit, depth = in_place_limit(0.0)
-    assert limit == pytest.approx(2 * 1.6128 * np.sqrt(3), rel=1e-4) and depth == pytest.approx(
-        0.48, abs=0.01
-    )
+    assert limit == pytest.approx(2 * 1.6128 * np.sqrt(3), rel=1e-4)
+    assert depth == pytest.approx(0.48, abs=0.01)
     assert in_place_limit(0.2)[0] == pytest.approx(1 / first_yield(0.2) * 2, rel=1e-3)
 
 

@@ -14,7 +14,6 @@ from PIL import Image
 
 from sam.scene import Scene
 from samfem.cli import PICTURES as NAMES
-from verification import EXTRAS
 from verification.figures.space import CannotDrawError, draw, offscreen
 from verification.figures.space.meshes import Found
 from verification.figures.space.pictures import PICTURES, Picture
@@ -121,14 +120,6 @@ def test_without_a_library_nothing_is_started_and_the_packages_are_named(monkeyp
         draw(found("elastic").run.folder)
 
 
-def test_osmesa_is_taken_where_there_is_no_egl(monkeypatch):
-    monkeypatch.delenv(offscreen.WINDOW, raising=False)
-    monkeypatch.setattr(offscreen, "_loads", lambda library: library == "libOSMesa.so.8")
-    assert offscreen.window() == "vtkOSOpenGLRenderWindow"
-    monkeypatch.setenv(offscreen.WINDOW, "vtkXOpenGLRenderWindow")
-    assert offscreen.window() == "vtkXOpenGLRenderWindow"
-
-
 @pytest.mark.parametrize(
     ("program", "longest", "how", "what_to_do"),
     [
@@ -179,12 +170,6 @@ class TestCommand:
         shown = samfem("view", *(run if word == "RUN" else word for word in words), code=2)
         assert said in shown.err and list(tmp_path.iterdir()) == []
 
-    def test_a_page_names_the_packages_that_it_needs(self, tmp_path, monkeypatch, samfem):
-        for name in EXTRAS["html"]:
-            monkeypatch.setitem(sys.modules, name, None)
-        shown = samfem("view", str(found("elastic").run.folder), "--html", str(tmp_path / "a.html"), code=2)
-        assert "trame_pyvista, nest_asyncio2: pip install 'samfem[html]'" in shown.err
-
 
 @pytest.fixture(scope="session")
 def can_draw():
@@ -216,10 +201,3 @@ class TestDrawn:
             assert (edge == 255).all()  # nothing is cut off
         samfem("view", str(folder), "--picture", "worn", "--out", str(tmp_path / "a.png"))
         assert (tmp_path / "a.png").read_bytes() == (folder / "figures" / "worn-3d.png").read_bytes()
-
-    def test_a_picture_that_a_run_does_not_have_is_refused(self, tmp_path, samfem):
-        out = tmp_path / "a.png"
-        shown = samfem(
-            "view", str(found("elastic").run.folder), "--picture", "worn", "--out", str(out), code=2
-        )
-        assert "does not have what --picture worn shows" in shown.err and not out.exists()

@@ -16,11 +16,9 @@ from verification.cases.robustness.stability import CASES, Matrix
 from verification.reference.hertz import CircularContact
 from verification.robustness.matrix.checks import Bench, Trial, check_of
 from verification.robustness.matrix.rows import (
-    ABSENT,
     RIGHT,
     WRONG,
     Cell,
-    Row,
     all_rows,
     judge,
     table,
@@ -170,10 +168,3 @@ def test_a_check_tells_right_from_wrong(said, given, right, wrong):
     assert (
         worst(said, given, {"quantities": {}} | right) <= 1 < worst(said, given, {"quantities": {}} | wrong)
     )
-
-
-def test_an_absent_cell_is_not_solved(monkeypatch):
-    monkeypatch.setattr(models, "solve", None)
-    row = Row("x", "edge", "x", {}, dict.fromkeys((SAM, FEM), ("absent", "of the other model")))
-    for model in (SAM, FEM):
-        assert judge(row, model, Bench()) == Cell(ABSENT, "of the other model")

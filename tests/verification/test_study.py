@@ -202,22 +202,3 @@ def test_all_errors_of_a_study_come_at_once(folder):
 )
 def test_a_wrong_study_is_refused(folder, vary, more, fragment):
     assert fragment in errors(folder, vary, more)
-
-
-@pytest.mark.parametrize(
-    "content, fragment",
-    [
-        (b"", "scene is missing: required: the name of a scene file"),
-        (b"\xff", "not UTF-8"),
-        (b"vary = [[[", "not TOML"),
-        (b"x = " + b"[" * 100_000, "nested too deeply"),
-        (b"scene = 'sphere.toml'\n[vary]\n" + b".".join([b"a"] * 5000) + b" = 1", "nested too deeply"),
-    ],
-)
-def test_a_file_that_is_no_study_is_refused(folder, content, fragment):
-    (folder / "study.toml").write_bytes(content)
-    with pytest.raises(SceneError) as caught:
-        read_study(folder / "study.toml")
-    assert fragment in str(caught.value) and "study.toml" in str(caught.value)
-    with pytest.raises(SceneError, match="No such file"):
-        read_study(folder / "none.toml")

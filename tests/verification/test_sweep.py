@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Sweeps end to end: the table, workers that die, what is kept, and the same on a Dask cluster."""
 
-import asyncio
 import csv
-import importlib
 import json
 import os
-import subprocess
-import sys
 import time
 from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,7 +19,7 @@ from optional_packages import dask_distributed
 
 from samfem import executors, sweeping
 from samfem.cli import main
-from samfem.executors import WORKER_DIED, Cluster, Failure, Processes, run
+from samfem.executors import WORKER_DIED, Failure, Processes, run
 from verification.runs import models, threads
 from verification.runs.files import read_run
 from verification.runs.store import FOLDER
@@ -317,45 +312,6 @@ def test_a_neighbour_of_a_deadly_task_is_not_blamed():
     assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
 
 
-def program_with_workers(program: str, *arguments: str) -> subprocess.CompletedProcess:
-    """A program that has to end in half a minute."""
-    tests = Path(__file__).parents[1]
-    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tests), str(tests.parent)])}
-    command = [sys.executable, "-c", program, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, env=path, timeout=30)
-
-
-def test_workers_end_when_their_parent_is_killed():
-    program = """
-import os, sys
-from samfem.executors import Processes
-import worker_functions as functions
-if __name__ == "__main__":
-    workers = Processes(1)
-    print(workers.submit(os.getpid).result(), flush=True)
-    workers.submit(functions.sleep, 60)
-    os._exit(9)
-"""
-    done = program_with_workers(program)
-    worker = int(done.stdout)
-    until = time.monotonic() + 10
-    while _is_alive(worker) and time.monotonic() < until:
-        time.sleep(0.02)
-    assert done.returncode == 9 and not _is_alive(worker)
-
-
-def _is_alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    try:
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except OSError:  # gone in between, or a machine without /proc
-        return not Path("/proc/self").exists()
-    return state != "Z"  # nobody may be there to collect it
-
-
 def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
     clock = SimpleNamespace(now=0.0)
     monkeypatch.setattr(time, "monotonic", lambda: clock.now)
@@ -392,46 +348,3 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_table(
     record = sweep_of("dask", "--no-runs", "--scheduler", address)
     assert marker.exists() and record["workers"] == {"kind": "dask", "lost": 1}
     assert record["counts"]["solved"] == 4 and Path("dask/sweep.csv").read_bytes() == calm
-
-
-def cascaded(status, result) -> BaseException:
-    """What distributed's executor makes of a task with this result, and this status after it."""
-    dask_distributed()
-    cascade = importlib.import_module("distributed.cfexecutor")._cascade_future
-
-    async def asked(**_):
-        return result
-
-    async def answer():
-        found = Future()
-        await cascade(SimpleNamespace(status=status, _result=asked), found)
-        return found.exception()
-
-    return asyncio.run(answer())
-
-
-def test_a_task_whose_worker_dies_just_after_its_result_is_no_failure():
-    def raised(error):
-        try:
-            raise error
-        except TypeError as found:
-            return TypeError, found, found.__traceback__
-
-    workers = SimpleNamespace(_killed=BrokenProcessPool)
-    assert Cluster.died(workers, cascaded("lost", Failure("any value")))
-    assert not Cluster.died(workers, cascaded("error", raised(TypeError("of the task"))))
-
-
-def test_a_cluster_without_workers_is_waited_for_and_said_once(capsys):
-    workers = SimpleNamespace(lost=0, _workers=set(), _told=False)
-    for threads_of, slots, lost, said in (
-        ({"a": 2, "b": 1}, 6, 0, 0),
-        ({"a": 2}, 4, 1, 0),
-        ({}, 1, 2, 1),
-        ({}, 1, 2, 0),
-        ({"c": 1}, 2, 2, 0),
-        ({}, 1, 3, 1),
-    ):
-        workers._client = SimpleNamespace(nthreads=lambda found=threads_of: found)
-        assert (Cluster.slots(workers), workers.lost) == (slots, lost)
-        assert capsys.readouterr().err.count("no workers now") == said

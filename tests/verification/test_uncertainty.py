@@ -251,9 +251,8 @@ def test_coarse_grids_that_the_plastic_zone_leaves_have_more_cells_of_the_same_s
     for label, cells in larger.items():
         small, large = choose_grid(calls[label]), choose_grid(calls[label + more])
         beside = (cells[0] - small.nx) // 2
-        assert large.shape == cells and large.x[beside : cells[0] - beside] == pytest.approx(
-            small.x, rel=1e-12
-        )
+        assert large.shape == cells
+        assert large.x[beside : cells[0] - beside] == pytest.approx(small.x, rel=1e-12)
         assert list(large.faces[: len(small.faces)]) == list(small.faces)
         assert 1.5 * small.faces[-1] <= large.faces[-1] < 2 * small.faces[-1]
 
@@ -363,14 +362,6 @@ def test_what_has_no_coarser_grid_is_refused(sphere, refused, change, words):
     solver = "" if "solver" in change else "[solver]\n"
     (sphere / "asked.toml").write_text(f"{text}{solver}uncertainty = true\n")
     assert words in refused("solve", "asked.toml")
-
-
-def test_a_sweep_refuses_it(sphere, refused):
-    (sphere / "sphere.toml").write_text(f"{TEXT}[solver]\nuncertainty = true\n")
-    (sphere / "study.toml").write_text(
-        'scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2, 0.3] }\n'
-    )
-    assert "solver.uncertainty = true: not in a sweep" in refused("sweep", "study.toml")
 
 
 def test_a_difference_beyond_both_uncertainties_is_seen():
