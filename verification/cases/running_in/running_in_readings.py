@@ -178,9 +178,11 @@ class RunningInReadings(Readings):
         return study.framed(kept, study.PARTS, self.numbers).assign(coarse=coarse)
 
     def measure(self, found: DataFrame) -> dict[str, Measured]:
-        """balance: of wear and raw removal, as the filter that fills digs as much; excess: over its goal."""
+        """balance: of wear and raw removal, as the filter that fills digs as much; excess: over its goal; of
+        runs that are solved, as a campaign keeps six digits.
+        """
         balance, excess = [0.0], [0.0]
-        for one in found[found["converged"]]["run"]:
+        for one in found[found["converged"] & found["run"].map(lambda one: one.solved)]["run"]:
             if one.scene.wear.smoothing_fills:
                 wear, raw = (one.of_cycles(name) for name in ("wear_of_cycle_m3", "raw_volume_m3"))
                 balance.append(float(np.abs(wear - raw).max() / max(raw.sum(), 1e-30)))
@@ -212,6 +214,10 @@ class RunningInReadings(Readings):
         yield study.runs_table("Runs", {f"{NAMES[case]}, {name}": runs for (case, name), runs in groups})
         yield late_wear(found)
         yield loops(found)
+        never, runs = never_together(found)
+        if never:
+            words = f"Pairs of statements that hold, but never both, on {runs} surfaces and readings"
+            yield SmallTable(words, ("one", "the other"), never)
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         yield " ".join(changes(self.judged(found)))
@@ -219,9 +225,6 @@ class RunningInReadings(Readings):
         few = found[found["coarse"]].groupby("reading", sort=False).size()
         counts = "; ".join(f"{name}: {count}" for name, count in few.items()) or "none"
         yield f"Runs with too few cells in a contact at the end, judged all the same: {counts}."
-        never, runs = never_together(found)
-        for pair in never:
-            yield f"Held each, never both, on {runs} surfaces and readings: {pair[0]}, and {pair[1]}."
         coarse, changed = self.judged(found), []
         for name, own in coarse.items():
             base, *words = COMBINED.get(name, ("",))
