@@ -375,9 +375,9 @@ def test_the_strain_that_a_twentieth_of_the_plastic_volume_exceeds():
 
 def test_top_of_a_parabola():
     x = np.array([0.2, 0.5, 0.9])
-    value, place = recovery.parabola_peak(x, 3.0 - 4.0 * (x - 0.47) ** 2)
+    value, place = common_recovery.parabola_peak(x, 3.0 - 4.0 * (x - 0.47) ** 2)
     assert place == pytest.approx(0.47, rel=1e-12) and value == pytest.approx(3.0, rel=1e-12)
-    assert recovery.parabola_peak(x, np.array([1.0, 1.0, 1.0])) == (1.0, 0.5)
+    assert common_recovery.parabola_peak(x, np.array([1.0, 1.0, 1.0])) == (1.0, 0.5)
 
 
 @pytest.mark.parametrize("rows, most, place", [((3.0,), 1.0, 2.5), ((1.0, 4.0), 929 / 880, 24 / 11)])
@@ -425,7 +425,7 @@ def test_what_has_yielded_gives_its_own_stress(strained):
     z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
     peak = SimpleNamespace(mises=q[:, None], flowed=np.full((4, 1), strained > 0))
     depth, largest = quantities.largest_mises(z, peak)
-    expected = (1.0, 0.3) if strained else recovery.parabola_peak(z[1:], q[1:])
+    expected = (1.0, 0.3) if strained else common_recovery.parabola_peak(z[1:], q[1:])
     assert (largest, depth) == pytest.approx(expected, rel=1e-12)
     within, axis, empty = np.zeros((4, 1, 4)), np.zeros((4, 2)), np.zeros(2)
     within[2], axis[2] = -1.0, [-1.1, -1.2]
