@@ -282,7 +282,10 @@ class Campaign:
         if not packed.is_file():
             return cls()
         lines = gzip.decompress(packed.read_bytes()).decode()
-        made, rows = lines.partition("\n")[0], pd.read_csv(io.StringIO(lines), comment="#")
+        made, rows = (
+            lines.partition("\n")[0],
+            pd.read_csv(io.StringIO(lines), comment="#", dtype={"scene": str}),
+        )
         results = {}
         for digest, own in rows.groupby("scene", sort=False):
             cycles = own[KEPT].dropna(axis="columns", how="all").to_dict("list")
@@ -380,9 +383,12 @@ class Readings(Case):
 
         rows = []
         for _, label, one in self.every(context, {}):
-            cycles = {name: one.of_cycles(name) for name in KEPT if name in one.result.tables["cycles"]}
+            cycles = one.result.tables["cycles"]
+            own = pd.DataFrame({name: cycles[name] for name in KEPT if name in cycles})
             who = {"scene": digest_of(one.scene), "run": label, "status": str(one.result.status)}
-            rows.append(pd.DataFrame(who | cycles))
+            rows.append(
+                own.reindex(range(max(len(own), 1))).assign(**who)
+            )  # one that ended in its first cycle
         last = list(context.sources.values())[-1]
         made = f"# {len(rows)} runs, {short(last.commit)}, {last.created[:10]}\n"
         table = pd.concat(rows).reindex(columns=["scene", "run", "status", *KEPT])
