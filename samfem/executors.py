@@ -18,6 +18,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
 from multiprocessing.connection import Connection
@@ -213,7 +214,7 @@ class Cluster:
             self._client.close()
             raise OSError(f"no workers there after {CONNECT_S:g} s") from error
         self.executor: Executor = self._client.get_executor(pure=False)
-        self.lost, self._killed, self._told = 0, distributed.KilledWorker, False
+        self._lost, self._killed, self._told = 0, distributed.KilledWorker, False
         self._workers: set[str] = set()
 
     def slots(self) -> int:
@@ -222,13 +223,20 @@ class Cluster:
             workers = self._client.nthreads()
         except OSError:
             raise ConnectionError(GONE) from None
-        self.lost += len(self._workers - set(workers))
+        self._lost += len(self._workers - set(workers))
         self._workers = set(workers)
         if not workers and not self._told:
             words = "samfem: sweep: the cluster has no workers now: waiting for some"
             print(words, file=sys.stderr, flush=True)
         self._told = not workers
         return 2 * sum(workers.values()) or 1
+
+    @property
+    def lost(self) -> int:
+        """How many workers are gone, with those since the last task was handed out."""
+        with suppress(ConnectionError):
+            self.slots()
+        return self._lost
 
     def died(self, error: BaseException) -> bool:
         return isinstance(error, self._killed) or _died_with_its_result(error)
