@@ -214,7 +214,7 @@ class Cluster:
             self._client.close()
             raise OSError(f"no workers there after {CONNECT_S:g} s") from error
         self.executor: Executor = self._client.get_executor(pure=False)
-        self._lost, self._killed, self._told = 0, distributed.KilledWorker, False
+        self.lost, self._killed, self._told = 0, distributed.KilledWorker, False
         self._workers: set[str] = set()
 
     def slots(self) -> int:
@@ -223,20 +223,13 @@ class Cluster:
             workers = self._client.nthreads()
         except OSError:
             raise ConnectionError(GONE) from None
-        self._lost += len(self._workers - set(workers))
+        self.lost += len(self._workers - set(workers))
         self._workers = set(workers)
         if not workers and not self._told:
             words = "samfem: sweep: the cluster has no workers now: waiting for some"
             print(words, file=sys.stderr, flush=True)
         self._told = not workers
         return 2 * sum(workers.values()) or 1
-
-    @property
-    def lost(self) -> int:
-        """How many workers are gone, with those since the last task was handed out."""
-        with suppress(ConnectionError):
-            self.slots()
-        return self._lost
 
     def died(self, error: BaseException) -> bool:
         return isinstance(error, self._killed) or _died_with_its_result(error)
@@ -245,6 +238,9 @@ class Cluster:
         return self
 
     def __exit__(self, kind: object, *_: object) -> None:
+        if kind is None:
+            with suppress(ConnectionError):
+                self.slots()  # counts those lost since the last task was handed out
         self.executor.shutdown(wait=kind is None)
         self._client.close()
 
