@@ -69,7 +69,7 @@ def studies():
 
 def test_the_readings_of_the_words_are_counted(readings):
     found = headline_of(read_stored(stored(readings, record(WORDS, readings["data"]))))
-    assert found.brief.endswith(" In 2 readings of its words 15 to 16 hold.")
+    assert found.brief.endswith(" In 2 readings of its words 15 to 16 of 17 hold.")
 
 
 def test_each_statement_has_a_row_with_what_decides_it_and_where_it_holds(readings, studies):

@@ -142,8 +142,10 @@ def _answer(held_first: int, count: int) -> str:
 def _in_brief(read: Verdicts, words: Mapping[str, Sequence[Mapping]]) -> str:
     first, *others = _by_median(read)
     second = "".join(f", {more} in a second reading of it" for more in others)
-    counts = [sum(map(held, each)) for each in words.values()]
-    tried = f" In {len(counts)} readings of its words {min(counts)} to {max(counts)} hold." if counts else ""
+    counts, tried = [sum(map(held, each)) for each in words.values()], ""
+    if counts:
+        asked = max(map(len, words.values()))
+        tried = f" In {len(counts)} readings of its words {min(counts)} to {max(counts)} of {asked} hold."
     return (
         f"{_answer(first, len(read))} With the inputs that the paper prints, {first} of its {len(read)} "
         f"statements about wear and friction of five materials hold{second}. The page says which, "
