@@ -19,7 +19,7 @@ from sam.contact.stress import yielding
 from sam.elastic.stress import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.plasticity.points import OFFSET
-from sam.plasticity.spectra import CACHED_BOXES, ROUNDED, SINGLE
+from sam.plasticity.spectra import CACHED_BOXES, SINGLE
 from sam.plasticity.state import Extent, Trial
 from sam.plasticity.swept import neighbours
 
@@ -179,7 +179,7 @@ class ExpectedBox:
     @property
     def width(self) -> int:
         """Bytes of a stored coefficient."""
-        return 4 if self.tolerance >= (SINGLE if self.swept else ROUNDED) else 8
+        return 4 if self.tolerance >= SINGLE else 8
 
     @property
     def waves(self) -> int:
@@ -192,7 +192,7 @@ class ExpectedBox:
     @property
     def matrices(self) -> int:
         """Bytes of the matrices between all layers, 36 nz^2 coefficients for each wave number."""
-        return (4 if self.tolerance >= ROUNDED else 8) * 36 * self.layers**2 * self.waves
+        return self.width * 36 * self.layers**2 * self.waves
 
     @property
     def large(self) -> bool:

@@ -20,7 +20,7 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
@@ -49,10 +49,8 @@ ODD_LAGS = [(x, y) for x, y in zip(*(np.not_equal.outer(o, o).ravel() for o in (
 SIGN = np.where(TWICE, -1.0, 1.0)  # of what is stored
 EVEN = np.zeros(1, int), np.zeros(1, int)  # parities in x and y of pressure and u_z
 CACHED_BOXES = 4  # spectra that are kept: the boxes of a history, or of both grids of an extrapolation
-# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough: for
-# contact and transforms too, and for the matrices between layers alone
+# tolerance of the plastic loop from which single precision, 1e-7 of the largest stress, is enough
 SINGLE = 5e-5
-ROUNDED = 1e-6
 
 
 class BoxSpectra:
@@ -69,7 +67,6 @@ class BoxSpectra:
         *,
         cells: tuple[int, int] = (0, 0),
         error: float = 0.0,
-        rounded: bool = False,
         period: PeriodicHalfSpaces | None = None,
     ):
         self.period = period
@@ -91,14 +88,13 @@ class BoxSpectra:
             self.layers: Reals | SweptLayers = SweptLayers(self, waves, cuboids, error=error, real=self.real)
         else:
             shape = self.waves, 6 * cuboids.layers, 6 * cuboids.layers
-            real = np.float32 if rounded else self.real
-            self.layers = kept(repr((cuboids, exchange)), shape, real, lambda: self._dense(shape, real))
+            self.layers = kept(repr((cuboids, exchange)), shape, self.real, lambda: self._dense(shape))
 
-    def _dense(self, shape: tuple[int, int, int], real: DTypeLike) -> Reals:
+    def _dense(self, shape: tuple[int, int, int]) -> Reals:
         """The matrices between all layers, (waves, 6 layers, 6 layers)."""
         layers, exchange = self.cuboids.layers, not isinstance(self.stored, slice)
-        out = np.empty(shape, dtype=real)
-        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=real)
+        out = np.empty(shape, dtype=self.real)
+        spectrum = np.zeros((36, layers, *np.add(self.half, 1)), dtype=self.real)
         rows = spectrum.reshape(6, 6 * layers, *spectrum.shape[2:])
         stress = self._layer_stress(slice(None), slice(None))
         for i in range(layers):
@@ -270,7 +266,7 @@ class BoxOperator:
         exchange: bool = False,
         swept: float = 0.0,
     ):
-        lags, single, rounded = box.lags, tolerance >= SINGLE, tolerance >= ROUNDED
+        lags, single = box.lags, tolerance >= SINGLE
         self.transforms = Transforms(
             lags.shape, mirror, single=single, counters=counters, periodic=self.period is not None
         )
@@ -283,7 +279,7 @@ class BoxOperator:
         in_cells_of_hx = Cuboids(Lags(*self.transforms.half, 1.0, aspect, lags.period), in_cells, box.nu)
         cells = lags.shape if swept else (0, 0)
         self.spectra = spectra_of(
-            in_cells_of_hx, single, exchange, cells=cells, error=swept, rounded=rounded, period=self.period
+            in_cells_of_hx, single, exchange, cells=cells, error=swept, period=self.period
         )
         self.exchange, self.real = exchange, self.transforms.real
 
