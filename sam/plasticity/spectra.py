@@ -157,33 +157,20 @@ class BoxSpectra:
             if self.period is not None:
                 out[0] = self.period.mean_residual(strain[0], self.cuboids.nu)
             return out
-        strain = strain.astype(self.layers.dtype, copy=False)
         if strain.shape[-1] == 1:  # bound by the memory of the matrices: einsum reads them faster than matmul
-            product = np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None]
-        else:
-            product = self.layers @ strain
-        return np.asarray(product, dtype=self.real)
+            return np.asarray(np.einsum("pij,pj->pi", self.layers, strain[..., 0])[..., None])
+        return np.asarray(self.layers @ strain)
 
     @cached_property
     def own_stress(self) -> Array:
         """Stress/mu of plastic strain in its own cell, (6, 6, n_layers)."""
-        if isinstance(self.layers, SweptLayers):
-            faces = self.cuboids.depths
-            means = functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
-            stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
-            out = np.zeros((36, len(faces) - 1, 1, 1))
-            for i in range(len(faces) - 1):
-                own = slice(i, i + 1)
-                stress.of(i, out[:, own], own)
-            return out.reshape(6, 6, -1)
-        # the transform back at no lag; wave numbers but 0 and N stand for their opposite too
-        weight = np.outer(*(np.where(np.arange(n + 1) % n, 1 / n, 0.5 / n) for n in self.half))
-        exchange = not isinstance(self.stored, slice)
-        weight[np.diag_indices(len(weight) if exchange else 0)] /= 2
-        diagonal = self.layers.reshape(self.waves, 6, self.cuboids.layers, 6, -1)
-        found = np.einsum("p,pikjk->ijk", weight.ravel()[self.stored], diagonal)
-        found *= np.where(np.any(ODD_LAGS, axis=1), 0.0, SIGN).reshape(6, 6, 1)
-        return found + found[EXCHANGED][:, EXCHANGED] if exchange else found
+        faces, means = self.cuboids.depths, functions_of(first_lags(self.cuboids.lags, (1, 1)), CellMeans)
+        stress = LayerStress(means, gauss_depths(faces), faces, self.cuboids.nu)
+        out = np.zeros((36, len(faces) - 1, 1, 1))
+        for i in range(len(faces) - 1):
+            own = slice(i, i + 1)
+            stress.of(i, out[:, own], own)
+        return out.reshape(6, 6, -1)
 
     def _of_waves(self, waves: Array) -> Reals:
         """Spectra (6, n_layers, N_x + 1, N_y + 1) as `_of_surface` has them."""

@@ -192,7 +192,7 @@ class Scene(Section):
         datum = f"a force with {axis}: the approach of a line contact has no absolute value"
         rough = has("surface") or has("counterbody.surface")
         cells, swept = at("grid.cells"), at("solver.operator") == "swept"
-        pair = isinstance(cells, list | tuple) and len(cells) == 2 and hasattr(cells[1], "__float__")
+        pair = isinstance(cells, list | tuple) and len(cells) == 2 and isinstance(cells[1], int)
         rows = cells[1] if pair else 0
         loop, plastic = at("solver.method") == "paper", has("body.plasticity")
         bordered, several = at("grid.border") == "relief", line and not rough and rows > 1

@@ -39,8 +39,8 @@ def plastic_shear(over_shear: float, depth, *, nu: float, passes: int) -> tuple[
         for step in np.diff(elastic, axis=0):
             flow = _beyond(stress := stress + step)
             stress, strain, way = stress - flow, strain + flow, way + _shear_of(flow)
-        free = -stress * (np.arange(6) == XZ)
-        free[:, 2] = -stress[:, 2]
+        free = np.zeros_like(stress)
+        free[:, [2, XZ]] = -stress[:, [2, XZ]]
         free[:, :2] = nu / (1.0 - nu) * free[:, 2:3]
         stress = stress + free
         added.append(strain[:, XZ])

@@ -160,7 +160,7 @@ class RunningInReadings(Readings):
     def readings(self, context: Context) -> Mapping[str, Reading]:
         return READINGS
 
-    def solved(self, reading: Any, material: str, surface: int) -> bool:
+    def solved_again(self, reading: Any, material: str, surface: int) -> bool:
         """Again: every reading on a quarter of the area, and a printed material."""
         return surface == AGAIN and (base_of(reading) != PRINTED or material == A)
 
@@ -189,10 +189,9 @@ class RunningInReadings(Readings):
             if one.scene.solver.method == "paper":
                 excess.append(float(one.of_cycles("yield_excess").max() / one.scene.solver.tolerance))
         lost = 1.0 - float(found["converged"].mean())
-        values = {"balance": max(balance), "excess": max(excess), "lost": lost}
-        return {name: Measured(value) for name, value in values.items()} | {
-            "campaign": Measured(study.off_campaign(found))
-        }
+        off = float(np.median(study.apart_from_campaign(found))) if self.campaign.results else 0.0
+        values = {"balance": max(balance), "excess": max(excess), "lost": lost, "campaign": off}
+        return {name: Measured(value) for name, value in values.items()}
 
     def judged(self, found: DataFrame) -> dict[str, list[dict[str, Any]]]:
         """Reading -> what is told of SAID."""

@@ -324,7 +324,7 @@ class Readings(Case):
         """By their names."""
         raise NotImplementedError(self.name)
 
-    def solved(self, reading: Any, material: str, surface: int) -> bool:
+    def solved_again(self, reading: Any, material: str, surface: int) -> bool:
         """Whether a run is solved even where a campaign has it."""
         return True
 
@@ -348,7 +348,7 @@ class Readings(Case):
     def ahead(self, context: Context) -> Iterable[Scene]:
         kept = self.campaign.results
         for key, (_, scene) in self.scenes(context).items():
-            if not kept or self.solved(*key) or digest_of(scene) not in kept:
+            if not kept or self.solved_again(*key) or digest_of(scene) not in kept:
                 yield scene
 
     def then(self, scene: Scene, result: Result) -> Scene | None:
@@ -362,7 +362,7 @@ class Readings(Case):
             while below is not None:
                 scene = below
                 old = kept.get(digest_of(scene)) if kept else None
-                now = old is None or self.solved(*key)
+                now = old is None or self.solved_again(*key)
                 result = context.solve(SAM, scene, label, demand=False) if now else old
                 # without the fields, of which all runs have gigabytes: their files have them
                 yield (
@@ -378,7 +378,10 @@ class Readings(Case):
         return {key: run for key, _, run in self.every(context, kept)}
 
     def keep(self, context: Context, path: Path) -> None:
-        """Solve all runs, or take them from the store, and write what a campaign has of them."""
+        """Solve all runs, or take them from the store, and write what a campaign has of them, with the commit
+        of the last one. No command calls it: `case_of(name).keep(context, path)`, once, with a path beside
+        this module.
+        """
         import pandas as pd
 
         rows = []
@@ -399,21 +402,20 @@ class Readings(Case):
     def told_of_campaign(self, found: DataFrame) -> Iterator[str]:
         """How many runs are from it, and how many of those were solved again."""
         if not (solved := found["run"].map(lambda one: one.solved)).all():
-            twice = sum(one.solved and one.kept is not None for one in found["run"])
+            off = apart_from_campaign(found)
             yield (
                 f"Taken from a campaign ({self.campaign.made}): {(~solved).sum()} of {len(found)} runs; "
-                f"solved again and held against it: {twice}."
+                f"solved again and held against it: {len(off)}, whose friction differs in any cycle by "
+                f"{np.median(off):.2g} in the median and {np.max(off):.2g} at most."
             )
 
 
-def off_campaign(found: DataFrame) -> float:
-    """Largest difference of the friction in any cycle from that of a campaign, the median of runs that are
-    solved again: over cycles single runs go apart, where a film of few cells fails or holds by a hair.
+def apart_from_campaign(found: DataFrame) -> list[float]:
+    """Of each run that is solved again the largest difference of the friction in any cycle from that of a
+    campaign; NaN alone where there is none.
     """
-    if all(one.kept is None for one in found["run"]):
-        return 0.0
     twice = [(one.history, History.of(one.kept.tables)) for one in found["run"] if one.solved and one.kept]
-    return float(np.median([outside(one.friction - old.friction, 0.0, 0.0) for one, old in twice] or [NAN]))
+    return [outside(one.friction - old.friction, 0.0, 0.0) for one, old in twice] or [NAN]
 
 
 def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:
