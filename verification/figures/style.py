@@ -117,7 +117,7 @@ def log_ticks(axis: Axis) -> None:
     """
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
-    between = (1.0, 2.0, 5.0) if decades > 1.0 else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    between = (1.0, 2.0, 5.0) if decades > 0.7 else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
     steps = (1.0,) if decades > MANY_DECADES else between
     several = LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7)
     axis.set_major_locator(several if high > 2.0 * low else MaxNLocator(4))
