@@ -37,7 +37,7 @@ from scipy.optimize import least_squares
 from scipy.stats import norm, t as student
 
 from sam.scene import Scene
-from verification.fit.definition import COMPLIANCE, ZERO, Definition, Parameter, Test, Variables
+from verification.fit.definition import COMPLIANCE, ZERO, Definition, Parameter, Test, Variables, with_load
 from verification.fit.measured import Points
 from verification.fit.solves import Answer, Answers, FitError
 
@@ -115,8 +115,11 @@ class Fitted:
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Parameter -> its confidence interval in SI, within its bounds."""
-        ends = zip(self.parameters, self.sought, self.half_widths, strict=True)
-        return {p.name: _clipped(p, x - w, x + w) for p, x, w in ends}
+        found = {}
+        for p, x, w in zip(self.parameters, self.sought, self.half_widths, strict=True):
+            low, high = np.clip([float(p.value(x - w)), float(p.value(x + w))], p.low, p.high)
+            found[p.name] = float(low), float(high)
+        return found
 
     @property
     def correlations(self) -> np.ndarray:
@@ -154,9 +157,8 @@ class Fitted:
         (n,) each, of parameters within their bounds. Of the layer, where it is sought.
         """
         strain = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 40) * self.strain])
-        plasticity = self.scene(
-            {p.name: float(np.clip(values[p.name], p.low, p.high)) for p in self.parameters}
-        ).body.plasticity
+        inside = {p.name: float(np.clip(values[p.name], p.low, p.high)) for p in self.parameters}
+        plasticity = self.scene(inside).body.plasticity
         assert plasticity is not None
         layer = any(".layer." in p.name for p in self.parameters)
         law = plasticity.layer if layer and plasticity.layer is not None else plasticity
@@ -175,12 +177,6 @@ class Fitted:
         draws = np.random.default_rng(SEED).multivariate_normal(self.sought, self.covariance, DRAWS)
         ends = [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2]
         return *self.curve(self.values), *np.quantile([stress(each) for each in draws], ends, 0)
-
-
-def _clipped(p: Parameter, low: float, high: float) -> tuple[float, float]:
-    """An interval of a variable in SI, within the bounds."""
-    ends = np.clip([float(p.value(low)), float(p.value(high))], p.low, p.high)
-    return float(ends[0]), float(ends[1])
 
 
 def fit(definition: Definition, answers: Answers, *, ahead: bool = True) -> Fitted:
@@ -352,9 +348,8 @@ class _Search:
             force, radius = more * load, larger * ball.radius
             share, back = np.linspace(0.05, 1.0, 20), np.arange(40) >= 20
             points = Points(np.tile(share, 2) * force, np.ones(40), back)
-            test = Test(
-                f"F {more:g}, R {larger:g}", "curve", first.loaded(force, radius), points, self.sigma[0]
-            )
+            scene = with_load(first.scene, force, radius=radius)
+            test = Test(f"F {more:g}, R {larger:g}", "curve", scene, points, self.sigma[0])
             alone = replace(self.definition, tests=(test,), of_machine=())
             try:
                 own = _Search(alone, self.answers).jacobian(fitted.sought[: self.n])

@@ -14,7 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,7 @@ from verification.fit.words import oliver_pharr
 from verification.runs.model_range import SWIFT as STEEL_MEASURED, errors
 from verification.runs.models import FEM, SAM
 from verification.runs.store import Store, default_store, kept_coefficients
-from verification.runs.tables import columns_text, read_any_table
+from verification.runs.tables import read_any_table
 
 NOISES, DRAWS, SEED = (0.005, 0.01, 0.03), 40, 7
 INSIDE = 0.6
@@ -125,7 +124,7 @@ LAWS = {
         },
         [(2e-4, 2.0), (6e-5, 2.0)],
         {"cells": [31, 31]},
-        (*range(6), 9, 10, 11),
+        (*range(7), *range(9, 13)),
     ),
 }
 
@@ -164,7 +163,7 @@ def one(
     name: str, noise: float, draws: np.random.Generator, context: Context | None = None
 ) -> dict[str, float]:
     """Of a draw: share of the parameters in their confidence intervals; median of the half-widths over the
-    bound of Cramer and Rao; largest relative error of the yield curve up to the largest strain; its median for
+    bound of Cramer and Rao; largest relative error of the yield curve to the largest strain; its median for
     parameters with the covariance of the bound; correlation of the first parameter and the last.
 
     With a context both models are solved, else the table answers.
@@ -361,14 +360,14 @@ def main() -> None:
     for name, law in LAWS.items():
         size = len(law.unknown)
         shape = [np.append(0.01, SHARE) * 0.02 * radius for radius, _ in law.tests]
-        for at in 2.0 * Sobol(size, seed=1).random(16)[list(law.points)] - 1.0:
-            for grid in GRIDS:
+        for at in sorted((2.0 * Sobol(size, seed=1).random(16)[list(law.points)] - 1.0).tolist()):
+            for grid in sorted(GRIDS):
                 for k, found in enumerate(solved(law, grid, law.values(at), shape=shape, store=store)):
                     rows.append([name, grid, k, *at, *[0.0] * (3 - size), *found])
     names = ["law", "model", "test", "at_0", "at_1", "at_2", "strain", "a_over_R", "dent"]
     frame = DataFrame(rows, columns=[*names, *(f"d{k}" for k in range(SHARE.size))])
-    path = Path(str(resources.files("verification"))) / "data" / KEPT
-    path.write_bytes(columns_text({name: frame[name].to_numpy() for name in frame}).encode())
+    with resources.as_file(resources.files("verification") / "data" / KEPT) as path:
+        frame.to_csv(path, index=False, float_format="%.6g")
 
 
 if __name__ == "__main__":
