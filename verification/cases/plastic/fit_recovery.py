@@ -304,7 +304,7 @@ def further(context: Context) -> Iterator[dict[str, Any]]:
         defined = law.definition(list(data), [0.005 * float(each) for each in data[:, -1]])
         found = fit(defined, Solves(SAM, context.store))
         named = {name.rpartition(".")[2] for _, names in found.open_combinations for name in names}
-        wide = {f"wide-{key[-1]}": w for key, w in zip(values, found.half_widths, strict=True)}
+        wide = {f"wide-{key[-1].lower()}": w for key, w in zip(values, found.half_widths, strict=True)}
         yield {"sweep": "further", "tests": tests, "open": "".join(sorted(named)), **wide}
         if found.further:
             law = replace(law, tests=[*law.tests, (found.further[0].radius, found.further[0].force)])
