@@ -54,7 +54,7 @@ def _pressed(
     inside: float = np.inf,
     share: float = 1.0,
 ) -> Reference:
-    """What round and line contacts share. stress: (..., 6) at depths on the axis; share: of uz in the body."""
+    """What round and line contacts share; stress: (..., 6) on the axis; share: of uz in one body."""
     a = exact.contact_radius
     known = {
         "approach": exact.approach,
