@@ -98,18 +98,13 @@ def pressure_maps(pair: FieldPair) -> Drawing:
         names = [Patch(color=GREY, label="no contact")]
         if any(pair.semi_axes):
             for panel in axes:
-                mark_outline(panel, pair.semi_axes)
+                width, height = 2.0 * pair.semi_axes[0], 2.0 * pair.semi_axes[1]
+                panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=BLACK, **_OUTLINE))
             names.append(
                 Line2D([], [], color=BLACK, linestyle="--", linewidth=1.0, label="edge of the contact")
             )
         name_marks(figure, names)
     return Drawing(figure, pair.data())
-
-
-def mark_outline(panel: Axes, semi_axes: tuple[float, float]) -> None:
-    """The edge of the contact, dashed."""
-    width, height = 2.0 * semi_axes[0], 2.0 * semi_axes[1]
-    panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=BLACK, **_OUTLINE))
 
 
 def name_marks(figure: Figure, handles: Sequence[Artist]) -> None:
@@ -131,7 +126,7 @@ def plane_maps(
         mark_levels(bar, levels)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
-            mark_contact(panel, pair.semi_axes[0])
+            mark_spots(panel, [(-pair.semi_axes[0], pair.semi_axes[0])])
         unit = " %" * pair.quantity.endswith("[%]")
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
             iso_lines(panel, (pair.u, pair.v), field, levels)
@@ -238,11 +233,6 @@ def outline(panel: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, **loo
     sides += [((a[i], b[j]), (a[i + 1], b[j])) for i, j in zip(*np.nonzero(along), strict=True)]
     look = {"color": BLACK, "linewidth": 0.8} | look
     panel.add_collection(LineCollection(sides, **look), autolim=False)
-
-
-def mark_contact(panel: Axes, half_width: float) -> None:
-    """A bar over a contact around the origin, at the top edge."""
-    mark_spots(panel, [(-half_width, half_width)])
 
 
 def mark_spots(panel: Axes, spots: Sequence[tuple[float, float]]) -> None:
