@@ -15,9 +15,11 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
+import pandas as pd
 import pytest
 from fake_case import FakeCase
 from hypothesis import HealthCheck, example, given, settings, strategies as st
+from made_results import of_frame
 
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
@@ -199,8 +201,8 @@ def test_control_characters_of_a_title_do_not_reach_the_terminal():
 
 
 def red(tally) -> set[str]:
-    values = case.CASES[0].values((tally, case.Tally()))
-    return {name.split(".")[1] for name, measured in values.items() if measured.value} - {"kinds-left-out"}
+    values = of_frame("bad-input", pd.DataFrame(case.judged(tally, case.Tally())))
+    return {name for name, measured in values.items() if measured.value} - {"kinds-left-out"}
 
 
 def slow(path, bad):
@@ -255,8 +257,8 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
 
 def test_kinds_that_were_not_tried_are_counted():
     tally = case.Tally(Counter({(kind, "valid"): 1 for kind in list(KINDS)[2:]}))
-    values = case.CASES[0].values((tally, case.Tally()))
-    assert values["bad-input.kinds-left-out"].value == 2
+    values = of_frame("bad-input", pd.DataFrame(case.judged(tally, case.Tally())))
+    assert values["kinds-left-out"].value == 2
 
 
 def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
