@@ -304,7 +304,7 @@ def judged(read: Tally, ran: Tally) -> Iterator[dict[str, Any]]:
         for kind in (*KINDS, "all"):
             yield {"sweep": words, "kind of input": kind} | {end: counts[kind, end] for end in ends}
     for tally in (read, ran):
-        yield {"sweep": "Slowest", "time [s]": tally.slowest[0], "input": tally.slowest[1]}
+        yield {"sweep": "Slowest", "time [s]": tally.slowest[0], "input": tally.slowest[1].partition(":")[0]}
 
 
 def main(what: str, first: str, last: str) -> None:
