@@ -11,17 +11,17 @@ from functools import _lru_cache_wrapper
 from types import FunctionType
 
 import numpy as np
+import pandas as pd
 import pytest
+from made_results import of_frame, red
 
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
-from verification.judging import evaluate
 from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
 from verification.robustness.mutants.equivalent import change
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
-from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache
@@ -250,24 +250,25 @@ def read_back(answer, tmp_path, monkeypatch):
     ("wrong", "gate"),
     [
         ({}, ""),
-        ({"judged": [KILLED] * 9 + [SURVIVED]}, "mutation.killed"),
-        ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "mutation.unexplained"),
-        ({"shown": [replace(SHOWN, change=50.0)]}, "mutation.not-inert"),
-        ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
-        ({"judged": [replace(KILLED, seconds=1.2)] * 40}, "mutation.slowest-kill"),
+        ({"judged": [KILLED] * 9 + [SURVIVED]}, "killed"),
+        ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "unexplained"),
+        ({"shown": [replace(SHOWN, change=50.0)]}, "not-inert"),
+        ({"control": ["tests/a.py::b"]}, "rewriting"),
+        ({"judged": [replace(KILLED, seconds=1.2)] * 40}, "slowest-kill"),
     ],
 )
 def test_what_is_wrong_turns_its_gate_red(wrong, gate, tmp_path, monkeypatch):
     found = read_back(GOOD | wrong, tmp_path, monkeypatch)
-    rows = [row for row in load_rows() if row.case == "mutation"]
-    red = {v.row.id for v in evaluate(rows, {"mutation": case.CASES[0].values(found)}) if not v.passed}
-    assert red == ({gate} if gate else set())
+    values = of_frame("mutation", pd.DataFrame(case.judged(found)))
+    assert red("mutation", values, whole=True) == ({gate} if gate else set())
 
 
 def test_structure_is_counted_apart_and_survivors_have_their_reason(tmp_path, monkeypatch):
     judged = [KILLED, replace(KILLED, outcome="structure"), SURVIVED]
     found = read_back(GOOD | {"judged": judged, "lost": {"m:f": "2: new"}}, tmp_path, monkeypatch)
-    none = "0 of 0"
-    assert case.counts_table(found).rows[-1] == ("all", "1 of 2", none, none, none, "1")
-    assert case.survivors_table(found).rows[0] == ("m:f", "2", "new", "")
-    assert len(case.equivalent_table(found).rows) == 1
+    gates, module, lost, _, shown = case.judged(found)
+    assert gates["killed"] == 0.5 and gates["unexplained"] == 1
+    assert module["numbers"] == "1 of 2" and module["table rows"] == "0 of 0"
+    assert module["structure, left out"] == 1
+    assert (lost["where"], lost["what"]) == ("m:f", "2: new")
+    assert shown["largest change, in tolerances"] == 0.5

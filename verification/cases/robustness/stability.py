@@ -42,4 +42,5 @@ def judged(rows: Sequence[Row], found: Mapping[str, Mapping[str, Cell]]) -> Iter
                 of |= {"error": nearest.error, "bound": nearest.bound, "of the bound": nearest.reason}
             yield of
     whole = sum(set(row.expected) == set(found[row.name]) for row in rows)
-    yield {"sweep": "Cells", "rows": whole, "rows expected": len(rows)} | kinds | {"time [s]": seconds}
+    counts = {f"cells {kind}": count for kind, count in kinds.items()}
+    yield {"sweep": "Cells", "rows": whole, "rows expected": len(rows)} | counts | {"time [s]": seconds}
