@@ -22,12 +22,9 @@ from verification.figures.lines import (
     LOOKS,
     PERCENT,
     PLAIN,
+    POINTS,
     Curve,
-    below_spots,
-    convergence,
     curves,
-    profile_of,
-    refinement,
 )
 from verification.figures.maps import (
     PRESSURE,
@@ -173,17 +170,21 @@ def _spot_pressures(found: Solved) -> Plot:
 def _spot_strains(found: Solved) -> Plot:
     """Over depth below the centre of each spot: SAM as a line, FEM at its points."""
     sam, fem = found.results.values()
-    both, panels = (Plane.of(sam.tables), Plane.of(fem.tables)), {}
+    both, panels, shade = (Plane.of(sam.tables), Plane.of(fem.tables)), {}, {}
     depths = np.linspace(both[0].z[0], 2e-6, 100), both[1].z[both[1].z <= 2e-6]
     for spot in spots(sam.tables, fem.tables):
-        first = strain_below(found.scene, sam, fem, spot)[0][0]
-        curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
-        panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
+        title = f"x = {spot.x * 1e6:.2f} µm"
+        panels[title] = {
+            name: Curve(1e6 * z, PERCENT * each.below(spot.x, z))
+            for name, z, each in zip(("SAM", "FEM"), depths, both, strict=True)
+        }
+        shade[title] = 0.0, 1e6 * strain_below(found.scene, sam, fem, spot)[0][0]
     words = (
         "The curves compare the plastic strain below each spot in y = 0 at peak load by SAM and by FEM; in "
         "the grey range, too near the surface, nothing is compared."
     )
-    return Plot(below_spots(panels), "strain", "Plastic strain below the spots", words)
+    drawing = curves(panels, "depth $z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
+    return Plot(drawing, "strain", "Plastic strain below the spots", words)
 
 
 def _residual_line(found: Solved) -> Plot:
@@ -235,12 +236,11 @@ def _strain_profiles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Pl
         panels = {}
         for variant, runs in fields.items():
             x = runs["fem"].place_of_maximum() if name == "column" else 0.0
-            order = ("fem", *(run for run in runs if run != "fem"))
-            panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {
-                run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
-                for run in order
-                if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
-            }
+            panel = panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {}
+            for run in ("fem", *(run for run in runs if run != "fem")):
+                label, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
+                if label in LOOKS:
+                    panel[label] = Curve(z[z <= DEEP], PERCENT * runs[run].below(x, z[z <= DEEP]))
         drawing = curves(panels, "depth $z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
         text = (
             "The curves compare the plastic strain in y = 0 at the peak by FEM, SAM and other forms of SAM. "
@@ -352,40 +352,55 @@ def of_kind(kind: str, found: Solved) -> Plot:
 
 def _orders(file: CaseFile, frame: DataFrame) -> Plot:
     """The errors of each refinement over the size of the cells, with the orders that rows take of them."""
-    panels: dict[str, dict[str, tuple]] = {}
+    panels: dict[str, dict[str, Curve]] = {}
     fits: list[str] = []
     for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
         sweep, title = file.sweeps[name], LABELS[model]
-        if not sweep.size:
-            continue
-        errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
-        curves = {
-            words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))
-            for c in errors
-        }
-        panels[title] = panels.get(title, {}) | curves
-        fits += [f"{title} {words} {order.exponent:.2f}" for words, (*_, order) in curves.items() if order]
+        for column in (
+            c for c, how in sweep.columns.items() if sweep.size and how not in ("value", "between")
+        ):
+            order, words = fitted(file, rows, column), words_of(file, column)
+            said = f"order {order.exponent:.2f}" if order else ""
+            look = {} if order else {"linestyle": "none"}
+            line = Curve(rows["h"].to_numpy(), rows[column].to_numpy(), order, said, look=look)
+            panels.setdefault(title, {})[words] = line
+            fits += [f"{title} {words} {order.exponent:.2f}"] if order else []
+    how = {"logarithmic": "xy", "ticks": lambda h: f"a/{1.0 / h:.3g}", "legend": "each", "size": (4.4, 3.9)}
+    drawing = curves(panels, "cell size", "relative error", **how)
     said = f"Observed orders: {', '.join(fits)}."
     text = f"The figure shows the errors over the cell size h; the lines are fits error ~ hᵐ. {said}"
-    return Plot(convergence(panels), "orders", "Error against cell size", text)
+    return Plot(drawing, "orders", "Error against cell size", text)
 
 
 def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
     """A strain over the size of what each sweep refines, with the limit of each model."""
-    panels, labels, off = {}, {}, []
+    panels: dict[str, dict[str, Curve]] = {}
+    labels, off = {}, []
     for name, rows in frame[frame["model"] != BOTH].groupby("sweep", sort=False):
-        models = rows.groupby("model", sort=False)
-        points = {LABELS[model]: (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
-        panels[name] = {model: (h, v, extrapolate(h, v)) for model, (h, v) in points.items()}
-        labels[name] = "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
-        sam, fem = (limit for *_, limit in panels[name].values())
-        if sam.observed and fem.observed:
-            off.append(f"{1e2 * (sam.limit / fem.limit - 1.0):+.2f} % ({name})")
+        panel, limits = panels.setdefault(name.capitalize(), {}), []
+        labels[name.capitalize()] = (
+            "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
+        )
+        for model, own in rows.groupby("model", sort=False):
+            h, strain, label = own["h"].to_numpy(), PERCENT * own[column].to_numpy(), LABELS[model]
+            limits.append(limit := extrapolate(h, own[column].to_numpy()))
+            if not limit.observed:
+                panel[label] = Curve(h, strain, note="no order observed", look={"linestyle": "none"})
+                continue
+            fit = lambda at, limit=limit: PERCENT * limit(at)  # noqa: E731
+            panel[label] = Curve(h, strain, fit, f"order {limit.order:.2f}", (0.0, h.max()))
+            look = POINTS[label] | {"marker": "D", "markersize": 5, "linestyle": "none", "clip_on": False}
+            panel[f"{label}, limit"] = Curve(np.zeros(1), np.array([PERCENT * limit.limit]), look=look)
+        if all(limit.observed for limit in limits):
+            off.append(f"{1e2 * (limits[0].limit / limits[1].limit - 1.0):+.2f} % ({name})")
     words, said = words_of(file, column), f" The limit of SAM is off that of FEM by {', '.join(off)}."
+    drawing = curves(panels, labels, f"{words} [%]", looks=POINTS, legend="each", size=(4.2, 3.4))
+    for axis in drawing.figure.axes:
+        axis.set_xlim(0.0, None)
     text = f"The figure shows the {words} of both models under refinement; the lines are fits limit + c hᵐ"
     text += ", drawn where an order is observed." + said * bool(off)
     title = f"{words[0].upper()}{words[1:]} under refinement"
-    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, text)
+    return Plot(drawing, "refinement", title, text)
 
 
 def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | None:
