@@ -23,8 +23,6 @@ the half-space, so that work also leaves the mesh there: it is stored in what li
 elastic. In space a half is modelled where y = 0 is a plane of symmetry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

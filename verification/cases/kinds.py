@@ -3,8 +3,6 @@
 both models (`verification.quantities.Solved`). Titles and captions follow from the vocabulary.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any

@@ -4,8 +4,6 @@ the axes, and return a `Drawing`, a figure of matplotlib and the columns of its 
 imported by the modules here only, which whoever draws loads on use.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Lines over x by series and panel, with points, fits and bounds: `curves`, and figures of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import cycle

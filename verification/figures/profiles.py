@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Curves against a closed form or FEM, with the errors underneath."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ An input is a small folder: `bad_input(seed, number)` is the same on every machi
 disk. Most inputs are wrong, some are odd but good; what a reader makes of them is the business of who calls.
 """
 
-from __future__ import annotations
-
 import io
 import json
 import os

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Commands in processes of their own, killed on purpose or not, and what they leave."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

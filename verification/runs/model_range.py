@@ -12,8 +12,6 @@ Before a solve a/R is the larger of Hertz and a fully plastic contact, F = H pi 
 stress at the strain 0.2 a/R (Tabor 1951; Johnson, Contact Mechanics (1985), section 6.3).
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace

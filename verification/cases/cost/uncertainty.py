@@ -4,8 +4,6 @@ drawn from a seed; as dimensionless numbers make a problem, an elastic sphere is
 shape, film, law, friction and load over yield stress differ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any

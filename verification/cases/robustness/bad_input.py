@@ -3,8 +3,6 @@
 wrong on purpose.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import os

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Solves and sweeps that are killed at random moments, and what else can go wrong in a run's folder."""
 
-from __future__ import annotations
-
 import os
 import random
 import shutil

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Mutation check: numbers, comparisons and conditions changed one at a time, and what fast tests notice."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The robustness matrix: whether every extreme is right, or an error that says what to change."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 

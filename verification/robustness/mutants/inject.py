@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A mutant put into this process: functions get other code, modules and classes other constants."""
 
-from __future__ import annotations
-
 import ast
 import functools
 import gc

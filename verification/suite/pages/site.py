@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The pages: an index, a page for each group of cases that ran, the index as Markdown, or all in one file."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import os
