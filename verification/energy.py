@@ -229,7 +229,8 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
         if grid.periodic:
             free = scene.loading.lateral == "free"
             thick = np.diff(model.faces(extent))
-            # u_z and u_x of the mean plane by the mean strain
+            # u_z, u_x of the mean plane by the mean plastic strain: the solver gives displacements about that
+            # plane, but the mean of the tractions does work on it
             e, nu = mean.strain.mean(axis=(2, 3)), scene.body.poisson
             along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
             both += (-np.array([along_z @ thick, 2 * e[4] @ thick]))[:, None, None]

@@ -263,7 +263,7 @@ LINE_ON_POINTS = {
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
-    """Yield stress in GPa to `deep` (m), without strain and with 1 %; name -> function of m, strain."""
+    """Yield stress to `deep` (m), without plastic strain and with 1 %; cases: name -> Pa of (m, strain)."""
     z = np.linspace(0.0, deep, 401)
     titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
     drawn = {
