@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Every hardening law, shape and reference solution is known wherever one of each is asked for:
-what is forgotten of a new one is named here.
+"""Every hardening law and shape is known wherever one of each is asked for: what is forgotten of a new one is
+named here.
 """
 
 import math
-import pkgutil
-import re
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +18,6 @@ from sam.planner.make import UnsupportedScene, check
 from sam.scene import load_scene
 from sam.scene.body import LAWS
 from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES
-from verification import reference
 from verification.checks.conditions import GAPS
 from verification.checks.material import yield_stress
 from verification.cost.advice import advice_of
@@ -73,12 +70,3 @@ def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_
     assert plastic_boxes(yielding, sam.plan(yielding)) and advice_of(yielding, ["sam"])["kind"] is None
     with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
         check(cone(loading={"force": 0.0}))
-
-
-def test_every_reference_solution_is_asked_for_by_a_test():
-    texts = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
-    names = {module.name for module in pkgutil.iter_modules(reference.__path__)} - {"checks"}  # of arguments
-    untested = {
-        name for name in names if not re.search(rf"\breference\.{name}\b|^    {name},$", texts, re.MULTILINE)
-    }
-    assert not untested

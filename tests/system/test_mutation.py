@@ -4,7 +4,6 @@ its gates turn red.
 """
 
 import json
-import os
 import sys
 from dataclasses import replace
 from functools import _lru_cache_wrapper
@@ -16,9 +15,8 @@ import pytest
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
 from verification.cases.robustness import mutation as case
 from verification.judging import evaluate
-from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
+from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
-from verification.robustness.mutants.equivalent import change
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
 from verification.rows import load_rows
@@ -127,10 +125,6 @@ def test_a_mutant_is_put_where_it_is_used(toy):
         assert found[key] == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
 
 
-def test_a_task_that_dies_has_no_answer():
-    assert in_forks([("dies", lambda: os._exit(1)), ("ends", lambda: 3)]) == {"dies": None, "ends": 3}
-
-
 def test_integer_is_a_number_beside_floats_alone():
     two, floats, whole = Number(2, 1.001), np.array([2.0, 4.0]), np.array([2, 4])
     assert (two * 3, 3 + two, 5**two, [4, 5, 6][two], len(range(two))) == (6, 5, 25, 6, 2)
@@ -213,21 +207,6 @@ def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
     assert np.mean(drawn) == pytest.approx(scope.PERCENT / 100, abs=0.03)
 
 
-def test_tests_are_asked_about_what_they_or_their_helpers_import():
-    this = sys.modules[__name__]
-    assert judge.uses(this, {"sam.kernels.patches"}) and judge.uses(this, {"sam.kernels.eigenstrain"})
-    assert not judge.uses(this, {"sam.elastic.misfit", "sam.moving"})
-
-
-def test_change_is_that_of_the_worst_column():
-    before = {"a_m": np.array([1.0, 2.0]), "b_m": np.array([1e-12, 0.0])}
-    before |= {"t.p_Pa": np.array([0.0, np.nan, 5.0])}
-    assert change(before, before) == 0.0
-    assert change(before, before | {"a_m": np.array([1.0, 2.002])}) == pytest.approx(1e-3)
-    assert change(before, before | {"b_m": np.array([2e-12, 0.0])}) == pytest.approx(5e-7)
-    assert change(before, before | {"b_m": np.array([1e-12])}) == np.inf
-
-
 MUTANT = Mutant("sam.contact.normal", "number", "f", 1, "2.0", 3, "return 2.0 * x")
 KILLED, SURVIVED = (
     MutantVerdict(MUTANT, "killed", "tests/a.py::b", 0.2, "assert", 1),
@@ -262,12 +241,3 @@ def test_what_is_wrong_turns_its_gate_red(wrong, gate, tmp_path, monkeypatch):
     rows = [row for row in load_rows() if row.case == "mutation"]
     red = {v.row.id for v in evaluate(rows, {"mutation": case.CASES[0].values(found)}) if not v.passed}
     assert red == ({gate} if gate else set())
-
-
-def test_structure_is_counted_apart_and_survivors_have_their_reason(tmp_path, monkeypatch):
-    judged = [KILLED, replace(KILLED, outcome="structure"), SURVIVED]
-    found = read_back(GOOD | {"judged": judged, "lost": {"m:f": "2: new"}}, tmp_path, monkeypatch)
-    none = "0 of 0"
-    assert case.counts_table(found).rows[-1] == ("all", "1 of 2", none, none, none, "1")
-    assert case.survivors_table(found).rows[0] == ("m:f", "2", "new", "")
-    assert len(case.equivalent_table(found).rows) == 1

@@ -7,7 +7,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-import pytest
 from builders import scene_text
 from fake_case import FakeCase
 from test_report import CASES, ROWS
@@ -37,12 +36,6 @@ def places_in(folder: Path, own: tuple[str, ...] = ()) -> list[str]:
 
 def test_nothing_published_names_a_machine():
     assert places_in(ROOT / "reports") == []
-
-
-@pytest.mark.parametrize("text", ["in /home/somebody/x", '"/tmp/out"', "C:\\Users\\x", "(/usr/bin/python3)"])
-def test_a_path_is_found(tmp_path, text):
-    (tmp_path / "page.html").write_text(f"<p>{text}</p> https://example.org/home/x <br/> m/s")
-    assert len(places_in(tmp_path)) == 1
 
 
 def test_nothing_that_a_command_writes_names_its_place(tmp_path, monkeypatch):
