@@ -18,13 +18,11 @@ import pytest
 from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 
 import fem_reference.axisymmetric.planner
-import fem_reference.spatial.planner
 import sam
 from sam.half_space import circular_contact_radius
 from sam.planner import bodies, make, stages
 from sam.scene import LeftOut
 from samfem.cli import main
-from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.text.console import Progress, digits, followed, print_anything, print_table
@@ -111,23 +109,6 @@ def test_a_file_of_another_kind_is_named_with_the_command_that_takes_it(folder, 
     (folder / "study.toml").write_text('scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2] }\n')
     (folder / "case.toml").write_text('scene = "sphere.toml"\n[rows.bound]\n')
     assert samfem(command, file, code=2).err == f"samfem: error: {file}: this is a {words} {file}\n"
-
-
-ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
-BEYOND = {
-    "body.poisson = 0.5": ("poisson = 0.3", "poisson = 0.5"),
-    "counterbody.shape": ('"sphere"\nradius = "105 um"', ELLIPSOID),
-}
-
-
-@pytest.mark.parametrize("key", BEYOND)
-def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, refused, samfem, key):
-    (folder / "scene.toml").write_text(scene_text(BEYOND[key]))
-    for command in ("solve", "compare"):
-        assert key in refused(command, "scene.toml", "--model", "fem-axisymmetric")
-    shown = samfem("plan", "scene.toml", "--verbose").out
-    assert f"fem-axisymmetric cannot ({key.split()[0]}" in shown
-    assert f"fem-axisymmetric: cannot be used: model fem-axisymmetric: {key}" in shown
 
 
 def test_help_and_version(samfem):
@@ -250,11 +231,6 @@ def calls_of(functions, act) -> dict[str, int]:
     return {name: calls[name] for name in names.values()}
 
 
-def test_plan_makes_the_plan_of_each_model_once():
-    planners = (make.plan, fem_reference.axisymmetric.planner.plan, fem_reference.spatial.planner.plan)
-    assert set(calls_of(planners, lambda: plan(parsed(add=GRID))).values()) == {1}
-
-
 SMALL = "[grid]\ncells = [9, 9]\n[solver]\ntolerance = 1e-3\n"
 ONCE = (make.check_bodies, make.plan_of, make.schedule_of, stages.stages_of, bodies._by_hertz)
 
@@ -271,7 +247,6 @@ def test_a_scene_is_checked_planned_and_estimated_once(folder, add):
 
 
 PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
-GRID = '[grid]\ncells = [65, 65]\nlayers = 20\ndepth = "10 um"\n'
 
 
 def test_a_file_that_the_scene_names_is_hashed_with_it(folder, samfem):

@@ -239,14 +239,6 @@ def test_a_perturbed_checkpoint_gives_other_bytes(model, changed, tmp_path):
         assert found[file] != expected[file]
 
 
-def test_equal_arrays_are_stored_once():
-    """Residual stress of the state and of the last step are one object, before and after."""
-    made = made_by(sphere(), SAM, stop=2)[1][-1]
-    assert "state.residual.stress" in made.arrays and "last.residual.stress" not in made.arrays
-    tree = made.tree()
-    assert tree["last"]["residual"]["stress"] is tree["state"]["residual"]["stress"]
-
-
 def test_times_add_up_over_the_parts():
     start = made_by(sphere(), SAM, stop=2)[1][-1]
     assert start.cost["cpu_s"] > 0 and start.cost["solve_s"] > 0

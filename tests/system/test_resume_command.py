@@ -3,8 +3,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from copy import deepcopy
@@ -21,7 +19,6 @@ from verification.runs.archive import read_archive, write_archive
 from verification.runs.files import CHECKPOINT, FolderError, check_target
 from verification.runs.models import FEM, SAM
 
-ROOT = Path(__file__).resolve().parents[2]
 PLASTIC = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
 LOADS = "steps = 4\nunload = true\n[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 4\n"
 ELASTIC = scene_text(("0.65 N", "0.171424 N"), add=LOADS)
@@ -120,28 +117,6 @@ def test_outside_the_main_thread_no_handler_is_set(folder):
     assert codes == [0]
 
 
-def test_killed_then_resumed(solve):
-    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest
-    gives the same bytes.
-    """
-    program = (
-        "import os, signal, sys\n"
-        "from samfem import cli\n"
-        "from verification.runs import checkpoints\n"
-        "class Killed(checkpoints.Writer):\n"
-        "    def write(self):\n"
-        "        super().write()\n"
-        "        if self.written is not None and self.written.done == 2:\n"
-        "            os.kill(os.getpid(), signal.SIGKILL)\n"
-        "checkpoints.Writer = Killed\n"
-        "sys.exit(cli.main(['solve', 'small.toml', '--out', 'out']))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"PYTHONPATH": str(ROOT)})
-    assert done.returncode == -signal.SIGKILL and [path.name for path in OUT.iterdir()] == [CHECKPOINT]
-    solve("--resume")
-    assert is_whole(solve)
-
-
 def test_killed_while_the_result_is_written(solve, monkeypatch):
     """The checkpoint outlives everything but summary.json."""
     original = files.write_atomically
@@ -214,17 +189,6 @@ def test_resume_of_a_finished_folder_solves_nothing_and_keeps_its_exit_code(fold
         assert {path: path.stat().st_mtime_ns for path in OUT.iterdir()} == before
     (folder / "small.toml").write_text(TEXT.replace("steps = 4", "steps = 3"))  # not finished
     assert "no checkpoint in out: solved from the beginning" in solve("--resume").err
-
-
-def test_an_older_result_stays_until_a_newer_solve_is_finished(solve, interrupt):
-    """Interrupted while it solves the scene of a finished folder again: the result is there, and
-    --resume finishes.
-    """
-    solve()
-    summary = SUMMARY.read_bytes()
-    interrupt(2)
-    assert SUMMARY.read_bytes() == summary
-    assert "continued from step 3 of 5" in solve("--resume").err
 
 
 def test_a_checkpoint_left_beside_its_result_does_not_count(solve, interrupt):

@@ -8,26 +8,21 @@ import json
 import re
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
 import pytest
 from builders import CHEMICAL_FILM, HARDENING, MODULUS, RADIUS, parsed, scene_text
 
-import sam
 from fem_reference.common.refusals import advice_of, message_of
 from sam.half_space import circular_contact_radius
 from sam.planner.make import remedies_of
 from sam.results.tables import advice as words_of
 from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
-from samfem import comparing
 from samfem.cli import CLAIMS
-from verification.compare.rows import judged
 from verification.cost import plan as plan_module
-from verification.judging import Measured
-from verification.runs import checkpoints, models, store
+from verification.runs import models
 from verification.runs.study import read_study
 from verification.text.readable import in_working_unit, with_prefix, with_time
 
@@ -123,12 +118,6 @@ class TestClaim:
         assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
         samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
-
-    def test_a_result_does_not_depend_on_the_claim(self):
-        """Key of the store, and what --resume compares."""
-        bare, asked = (parsed(add=self.film + add) for add in ("", self.asked))
-        for identity in (store.identity, checkpoints.identity):
-            assert identity(bare, models.SAM) == identity(asked, models.SAM)
 
 
 def test_values_and_times_for_a_person():
@@ -291,15 +280,6 @@ class TestAdviceOfWhatCanBeChanged:
         _, said = advice_of(coated).outcome(Status.CONVERGED, 1e3)
         assert "raise body.coating.yield_stress" in said and "friction" not in said
 
-    def test_relief_is_not_advised_where_it_is_set(self):
-        """A contact that covers the whole patch."""
-        for border, advised in (("free", True), ("relief", False)):
-            plan = sam.plan(with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border}))
-            touching = SimpleNamespace(pressure=np.ones(plan.grid.shape))
-            *_, edge = plan.rough.warnings(plan.grid, touching)
-            assert "touches the edge" in edge and ('grid.border = "relief" lets' in edge) == advised
-            assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
-
     def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
         """They are those of the file."""
         surface = {"kind": "file", "path": HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))}
@@ -315,21 +295,3 @@ class TestAdviceOfWhatCanBeChanged:
         assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
         given = "raise grid.cells, or give a smaller grid.extent"
         assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(given)
-
-
-@pytest.mark.parametrize("scene", [SMOOTH, PATCH])
-def test_a_comparison_is_refined_by_keys_of_the_scene_unless_a_solve_did_not_converge(scene, capsys):
-    row, how = (
-        judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, "")),
-        {"model": "sam", "uncertainty": None},
-    )
-    good = SimpleNamespace(converged=True, discretisation={}, **how)
-    bad = SimpleNamespace(converged=False, status=Status.STEP_CUT_LIMIT, message="change this", **how)
-    bad.discretisation = {}
-    assert comparing._judge(scene, [good], [row]) == 1
-    said = capsys.readouterr().err
-    assert "p_max_Pa" in said and "raise grid.cells" in said and "number of layers" not in said
-    assert ("fem.cells_per_radius = 16" in said) == (scene is SMOOTH)
-    assert comparing._judge(scene, [bad, good], [row]) == 1
-    said = capsys.readouterr().err
-    assert "change this" in said and "tolerance" not in said
