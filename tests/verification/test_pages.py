@@ -13,18 +13,12 @@ from page_checks import PageReader, broken_links, faults_of
 
 from verification.cases import all_cases
 from verification.rows import load_rows
-from verification.suite.pages import write_report
 from verification.suite.pages.answers import (
     PARTS,
-    RESULT,
     Evidence,
     answers_of,
     cell,
-    kind_of,
     pairs_of,
-    percent,
-    sentence,
-    value,
 )
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.site import works
@@ -121,39 +115,6 @@ def changed(results, gate, **values):
     return new
 
 
-def said(results) -> str:
-    found = evidence_of(results)
-    return sentence(found.stored, found.pairs, 0.15)
-
-
-def test_failed_gates_are_told_apart_by_what_they_are_about(results):
-    assert kind_of("peers.same-solution") == kind_of("hertz-sphere.pressure") == RESULT
-    assert kind_of("peers.step-16") == "a cost"
-    held = copy.deepcopy(results)
-    for each in held["gates"] + held["cases"]:
-        each["status"] = "passed"
-    assert "none failed. Of" in said(held)
-    one = copy.deepcopy(held)
-    one["cases"][0]["status"] = "not run"
-    assert said(one).endswith(
-        f"{len(one['cases']) - 1} of the {len(one['cases'])} cases ran; the others: 1 did not run."
-    )
-    words = "1 failed (none about a result; 1 about a cost)"
-    assert words in said(changed(held, "peers.step-16", status="failed"))
-    assert "1 failed (1 about a result)" in said(changed(held, "peers.same-solution", status="failed"))
-
-
-def test_a_share_has_two_digits_or_is_rounding_or_nothing():
-    expected = ["\N{MINUS SIGN}1.2\N{NO-BREAK SPACE}%", "rounding", "0\N{NO-BREAK SPACE}%"]
-    assert [percent(share) for share in (-0.01234, 1e-9, 0.0)] == expected
-
-
-def test_a_gate_without_a_number_is_no_finding(results):
-    gate = "peers.same-solution"
-    assert list(value(evidence_of(results), "", gate))
-    assert not list(value(evidence_of(changed(results, gate, value=None, error=None)), "", gate))
-
-
 def test_the_published_index_answers_every_question(evidence):
     answers = answers_of(evidence)
     silent = [answer for answer in answers if not answer.findings]
@@ -193,22 +154,3 @@ def test_an_answer_is_the_worst_of_its_gates_or_that_none_ran(results):
     assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "full level"
     next(case for case in new["cases"] if case["name"] == "peers")["unmet"] = "run only when named"
     assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "only when named"
-
-
-@pytest.fixture(scope="module")
-def one_case(results) -> dict:
-    few = copy.deepcopy(results)
-    few["cases"] = [case for case in few["cases"] if case["name"] == "hertz-sphere"]
-    return few
-
-
-def test_what_is_older_than_the_code_is_marked_and_pages_elsewhere_link_no_scene(one_case, tmp_path):
-    write_report(one_case, tmp_path, stale={"hertz-sphere": "its scene has changed"})
-    marked = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.glob("*.*")}
-    assert "Older than the code: its scene has changed." in marked["elastic.html"]
-    assert all("1 case is older than the code" in marked[name] for name in ("index.html", "README.md"))
-    write_report(one_case, tmp_path)
-    assert "older than the code" not in (tmp_path / "index.html").read_text(encoding="utf-8")
-    page = PageReader((tmp_path / "elastic.html").read_text(encoding="utf-8"))
-    assert "hertz-sphere.toml" in page.text  # a link out of the folder would name a place of the machine
-    assert not [each["href"] for each in page.all("a") if each["href"].endswith(".toml")]

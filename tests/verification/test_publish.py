@@ -11,7 +11,7 @@ from stored import COARSE
 from test_report import sketch
 
 from samfem import publishing
-from verification.cases.case import Case, Context, Figure, NotDrawnError, Outcome, Plot, with_loading
+from verification.cases.case import Case, Figure, Outcome, Plot, with_loading
 from verification.judging import Measured
 from verification.runs import models
 from verification.suite import freshness, outcomes, verify
@@ -148,36 +148,6 @@ def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
     assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
 
 
-class Undrawn(Case):
-    """Its second figure cannot be drawn."""
-
-    def solve(self, context):
-        return None
-
-    def measure(self, found):
-        return {"one": Measured(1.0, 1.0)}
-
-    def figures(self, found):
-        yield Plot(sketch(), "curve", "A curve", "Caption")
-        raise ValueError("no place for a label")
-
-
-def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
-    tmp_path, published, monkeypatch
-):
-    cases = {"first": Undrawn("first", "first", "Is it drawn?"), "second": published.case("second")}
-    monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
-    assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
-    results = report_in(tmp_path)
-    first, second = results["cases"]
-    assert (first["status"], first["failure"], second["status"]) == ("failed", "", "passed")
-    assert "ValueError: no place for a label (test_publish.py" in first["figures"][1]["findings"][0]
-    assert [gate["status"] for gate in results["gates"]] == ["passed", "passed"]
-    with pytest.raises(NotDrawnError, match="no place for a label"):
-        cases["first"].run(Context("first", tmp_path, "full", print))
-
-
 def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):
     published.problem = "second"
     run(tmp_path, code=1)
@@ -188,21 +158,3 @@ def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsy
     published.problem = ""
     run(tmp_path)
     assert published.runs == ["first", "second", "timed", "second"]
-
-
-def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, published, capsys):
-    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
-    assert publishing.publish(["frist"], out=tmp_path / "out", **where) == 2
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "notes.txt").write_text("mine")
-    assert publishing.publish([], out=tmp_path / "mine", **where) == 2
-    assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
-    assert published.runs == []
-
-
-def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
-    before = run(tmp_path)
-    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
-    assert publishing.publish([], level="quick", **where) == 2
-    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
-    assert run(tmp_path) == before

@@ -112,14 +112,6 @@ def test_a_long_cylinder_is_drawn_as_long_as_two_widths_of_its_contact(model):
 DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
 
 
-def test_without_a_library_nothing_is_started_and_the_packages_are_named(monkeypatch):
-    monkeypatch.delenv(offscreen.WINDOW, raising=False)
-    monkeypatch.setattr(offscreen, "WINDOWS", {"libNoSuchLibrary.so.1": "vtkEGLRenderWindow"})
-    monkeypatch.setattr(subprocess, "run", pytest.fail)
-    with pytest.raises(CannotDrawError, match=re.escape(offscreen.INSTALL)):
-        draw(found("elastic").run.folder)
-
-
 @pytest.mark.parametrize(
     ("program", "longest", "how", "what_to_do"),
     [
