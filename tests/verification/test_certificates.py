@@ -27,7 +27,7 @@ from verification.checks import (
     film as film_checks,
     spatial as spatial_checks,
 )
-from verification.checks.certificates import common, solved
+from verification.checks.certificates import solved
 from verification.checks.material import around, back_stress, flow_of
 from verification.rows import load_rows
 from verification.runs.models import FEM_3D
@@ -260,12 +260,6 @@ def test_a_perturbed_answer_is_seen(solve, of, what, change):
     assert check(*solve(*of)) <= most < check(*change(*solve(*of)))
 
 
-def test_a_step_that_ends_above_its_goal_is_seen(solve):
-    scene, result, _ = solve(*SWIFT)
-    late = with_column(result, "residuals", "residual", lambda r: 1e9 * r)
-    assert common(scene, late)["histories"] >= 1
-
-
 def more_of(part):
     """A history with 1.0001 times a part of it."""
     return lambda history: replace(history, **{part: 1.0001 * getattr(history, part)})
@@ -315,14 +309,6 @@ def test_a_wrong_state_of_a_step_is_seen(solve, of, changes, seen):
     assert all(found[what] > LIMITS[f"{of[0]}-{what}"] for what in seen.split())
 
 
-def test_fields_of_elements_that_are_returned_wrong_are_seen(solve):
-    scene, result, records = solve(*SLIDING)
-    steps = spatial_checks.steps_of(scene, records)
-    for name in ("stress_Pa", "peeq", "plastic_strain"):
-        changed = with_field(result, "cell_data", name, lambda field: 1.0001 * field)
-        assert spatial_checks.fields(steps, changed) > LIMITS["fem-3d-fields"]
-
-
 def test_a_film_that_yields(solve):
     """Film and body flow by laws of their own, the film at its own yield stress."""
     scene, _, records = solve("fem", "film that yields")
@@ -358,15 +344,6 @@ def test_a_wrong_state_of_a_chemical_film_is_seen(solve):
     assert states(mended) > most and states(lambda _, state: state["failed"].fill(False)) >= 1
     friction = scene.friction.model_copy(update={"strain_limit": 1e-4})
     assert film_checks.states(scene.model_copy(update={"friction": friction}), records) > most
-
-
-def test_cells_of_a_chemical_film_have_one_of_both_coefficients(solve):
-    scene, result, _ = solve("rough", "rough, film that fails")
-    p = contact_checks.surface_of(result)[2]
-    ratio = contact_checks.returned_traction(result)[p > 0] / p[p > 0]
-    assert {round(float(each), 12) for each in ratio} == {scene.friction.low, scene.friction.high}
-    other = with_field(result, "cell_data", "qx_Pa", lambda q: q + 1e-3 * p.max())
-    assert contact_checks.slips(scene, other) > LIMITS["rough-friction"]
 
 
 UNIAXIAL = np.array([1.0, 0, 0, 0, 0, 0])[:, None]
