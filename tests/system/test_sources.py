@@ -86,7 +86,7 @@ def test_the_page_of_equations_is_right():
 
 
 def test_a_table_names_no_module_of_the_other_model():
-    """Texts of a source that are names of modules, to load them when a scene needs them: no linter sees them."""
+    """Texts that are names of modules, to load them when a scene needs them: no linter sees them."""
     own = {"sam": ("sam.",), "fem_reference": ("fem_reference.", "sam.scene.")}
     known = {path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in SOURCES}
     seen = set()
