@@ -138,19 +138,6 @@ def test_integer_is_a_number_beside_floats_alone():
     np.testing.assert_allclose(whole / two, [4 / 2.002, 8 / 2.002])
 
 
-def test_rewriting_alone_changes_no_bit():
-    def spectra():
-        from sam.layered.response import Layers, Response  # noqa: PLC0415 - rewritten in the fork
-
-        return Response(Layers(1e9, 0.3, 1.0, 2e11, 0.25), np.geomspace(0.01, 10, 9)).surface
-
-    def rewritten():
-        inject.put([m for m in mutants_of("sam.layered.response") if m.kind in scope.NUMBERS], 1.0)
-        return spectra()
-
-    np.testing.assert_array_equal(in_forks([("it", rewritten)])["it"], spectra())
-
-
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
     rows = [m for m in mutants_of("sam.kernels.patches") if m.kind == "row" and "displacement 3,F3" in m.text]
     before = coefficients(Lags(3, 3, 1.0, 1.0), 0.3, z=0.5)

@@ -12,16 +12,15 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, HARDENING, MODULUS, RADIUS, parsed, scene_text
+from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 
-from fem_reference.common.refusals import advice_of, message_of
+from fem_reference.common.refusals import message_of
 from sam.half_space import circular_contact_radius
 from sam.planner.make import remedies_of
 from sam.results.tables import advice as words_of
-from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
+from sam.scene import Compare, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem.cli import CLAIMS
-from verification.cost import plan as plan_module
 from verification.runs import models
 from verification.runs.study import read_study
 from verification.text.readable import in_working_unit, with_prefix, with_time
@@ -263,35 +262,3 @@ class TestAdviceOfWhatCanBeChanged:
     def test_a_key_at_its_limit_is_not_advised(self, advise, status, limit, key):
         assert f"raise {key}" in advise(SMOOTH, status)
         assert key not in advise(with_changes(SMOOTH, **limit), status)
-
-    def test_a_load_and_friction_are_lowered_by_the_keys_of_their_law(self):
-        pressure = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": 1e-6}
-        given = with_changes(SMOOTH.model_copy(update={"counterbody": None}), loading=pressure)
-        for advise in (advice, message_of):
-            said = advise(given, Status.CONTACT_AT_GRID_EDGE)
-            assert "loading.p0" in said and "loading.force" not in said
-        assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
-        slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
-        assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
-        said = advice(with_changes(SMOOTH, friction={**CHEMICAL_FILM, "high": 5.0}), Status.NOT_CONVERGED)
-        assert "lower friction.high, 5" in said and "friction.coefficient" not in said
-        film = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
-        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": film})
-        _, said = advice_of(coated).outcome(Status.CONVERGED, 1e3)
-        assert "raise body.coating.yield_stress" in said and "friction" not in said
-
-    def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
-        """They are those of the file."""
-        surface = {"kind": "file", "path": HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))}
-        measured = Scene(**{**resolved(PATCH), "surface": surface, "grid": None})
-        for advise in (advice, message_of):
-            said = advise(measured, Status.UNDER_RESOLVED)
-            assert 'surface.resample = "fourier" with grid.cells above [16, 16]' in said
-            assert "raise grid.cells" not in said and "grid.extent" not in said
-        data = {**resolved(PATCH), "surface": {**surface, "resample": "fourier"}, "grid": {"cells": (32, 32)}}
-        resampled = advice(Scene(**data), Status.UNDER_RESOLVED)
-        assert "raise grid.cells = [32, 32]" in resampled and "resample" not in resampled
-        assert "surface.crop" in plan_module._smaller(measured, models.SAM)
-        assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
-        given = "raise grid.cells, or give a smaller grid.extent"
-        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(given)

@@ -1,53 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The cases of repeated loads on made results: the rows that turn red when a number is wrong."""
 
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from made_results import Made, context, red
+from made_results import context
 
-from verification.cases import all_cases
 from verification.cases.cyclic import misfit_cycles
 from verification.references import growing_sphere
-
-exact_cycles = cache(misfit_cycles.cycled_sphere)
-"""Each is asked for by both models and by the case."""
-
-
-@pytest.mark.parametrize("wrong", [False, True])
-def test_misfit_sphere_in_cycles(wrong, monkeypatch):
-    """The exact strains and verdicts in both models; each run, known by its periods, wrong in its way."""
-    monkeypatch.setattr(misfit_cycles, "REACHES", np.linspace(0.3, 3.0, 28))
-    monkeypatch.setattr(misfit_cycles, "sphere_cells", lambda scene, size: scene)
-    monkeypatch.setattr(misfit_cycles, "cycled_sphere", exact_cycles)
-    changes = {
-        ("sam", 30): {"peeq_step_max": 1.031},
-        ("fem-axisymmetric", 30): {"strain_step_max": 0.969},
-        ("fem-axisymmetric", 4): {"peeq_step_max": 0.969},
-        ("sam", 4): {"verdict": ["undecided"] * 4},
-        ("sam", 75): {"verdict": ["undecided"] * 52 + ["alternating"] * 23},
-        ("fem-axisymmetric", 240): {"verdict": ["undecided"] * 240},
-        ("sam", 240): {"verdict": ["ratchetting"] + ["alternating"] * 239},
-    }
-
-    def made(model, scene):
-        periods, exact = scene.loading.cycles, exact_cycles(scene).values
-        here = changes.get((model, periods), {}) if wrong else {}
-        said = here.get("verdict", ["undecided"] * 3 + ["alternating"] * (periods - 3))
-        table = {"verdict": said, "periods_to_decide": [4] * periods}
-        for name, column in (("peeq", "peeq_step_max"), ("strain", "strain_step_max")):
-            table[column] = np.append(1.0, exact[name]) * here.get(column, 1.0)
-        return Made(tables={"cycles": table})
-
-    seen = (
-        "sam-af-5-peeq fem-af-5-strain fem-prager-5-peeq sam-prager-5-class sam-near-2-told fem-near-1-told"
-    )
-    name, solver = "misfit-cycles-near", context("misfit-cycles-near", Path(), "full")
-    solver.solve = lambda model, scene, label, demand=True: made(model, scene)
-    found = red(name, all_cases()[name].measure(all_cases()[name].solve(solver)), whole=True)
-    assert found == ({*seen.split(), "ratchetting"} if wrong else set())
 
 
 def test_the_exact_solution_of_a_period_is_that_of_the_closed_form():

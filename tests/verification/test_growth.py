@@ -13,7 +13,7 @@ from made_results import of_frame, red
 
 from sam.scene import parse_scene
 from verification.cases.case import Context
-from verification.cases.cost import growth as case, published_code
+from verification.cases.cost import published_code
 from verification.cost import estimates, growth
 from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
@@ -87,59 +87,6 @@ def test_every_count_has_a_factor():
             found = estimates.counted(rung.scene, rung.model)
             assert found.bytes.keys() <= estimates.MEMORY[rung.model].keys()
             assert found.work.keys() <= estimates.TIME[rung.model].keys()
-
-
-def synthetic(power: float = 1.0) -> tuple[dict, dict]:
-    """Measurements that grow as they should (their time to `power`) and are as the plan says."""
-    found = {}
-    for name, make in growth.FAMILIES.items():
-        found[name] = []
-        for k, rung in enumerate(make()):
-            size = rung.size or 1e4 * 3**k
-            seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power * (1 + (name == "stresses"))
-            said = estimates.estimate(rung.scene, rung.model)
-            memory = max(said.memory_bytes - round(estimates.IDLE_BYTES), 1)
-            row = {"model": rung.model, "family": rung.family, "scene": rung.label, "size": size}
-            row |= {"cpu-s": seconds, "predicted-s": said.time_s, "memory": memory}
-            found[name].append(row | {"predicted-memory": memory, "converged": True})
-    boxes = {name: [box_of(power, *sizes) for sizes in each] for name, each in case.BOXES.items()}
-    return found, boxes
-
-
-def box_of(power: float, nx: int, ny: int, nz: int, error: float) -> dict:
-    cells = nx * ny
-    cost = {"cpu-s": (1e-8 * cells * (nz if error else nz**2)) ** power, "set-up-s": 1e-5 * cells * nz}
-    size = {"cells": cells * nz, "plane": cells, "depth": nz}
-    return {"model": SAM, "scene": "box", **size, **cost, "stored": 8 * cells, "memory": 9 * cells * nz}
-
-
-def gates(found, boxes) -> tuple[pd.DataFrame, dict, set[str]]:
-    """The frame, the values of the rows and those that are red."""
-    frame = pd.DataFrame(case.rows_of(found, boxes))
-    values = of_frame("growth", frame)
-    return frame, values, red("growth", values, whole=True)
-
-
-def test_growth_as_it_should_be_passes(tmp_path):
-    frame, values, wrong = gates(*synthetic())
-    assert wrong <= {"time-factor"}
-    assert values["exponent-contact"].value == pytest.approx(1.0)
-    assert values["memory-error"].value == pytest.approx(0.0, abs=1e-6)
-    assert case.exponents(frame).rows[0][-1] == "1.00 ± 0.00"
-    context = Context("growth", tmp_path, "full", lambda *_: None)
-    assert context.save(case.times(None, frame)).findings == ()
-
-
-def test_growth_that_is_too_fast_is_red():
-    own = {f"exponent-{name}" for name in ("contact", "stresses", "plane", "depth", "cycles")}
-    assert own <= gates(*synthetic(power=1.4))[2]
-
-
-def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
-    found, boxes = synthetic()
-    last = found["contact"][-1]
-    last |= {"memory": round(1.25 * last["memory"]), "converged": False}
-    assert {"memory-error", "unconverged"} <= gates(found, boxes)[2]
 
 
 # against the published code

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from made_results import Made
 
-from verification.cases.moving import moving_sphere, moving_steps
 from verification.quantities import OF_TRACKS, QUANTITIES, Reference, Solved, refined
 
 
@@ -52,18 +51,3 @@ def test_passes_of_both_models_are_held_over_the_first_and_those_that_count_over
     assert QUANTITIES["counted"].whole(found) == 2.0 and QUANTITIES["verdict"].whole(found).value == 2.0
     assert QUANTITIES["shakes-down"].whole(solved({"sam-6": right})).value == 1.0
     assert QUANTITIES["alternates"].whole(solved({"sam-6": right})).value == 0.0
-
-
-def test_the_limit_in_steps_is_that_of_errors_of_any_order():
-    by_steps = {n: {"groove": 1.0 - 0.3 / n**0.8} for n in moving_steps.STEPS}
-    assert moving_steps.limit(by_steps, "groove") == pytest.approx(1.0, rel=1e-9)
-    by_cells = {n: {"groove": 1.0 - 0.5 / n**2} for n in moving_steps.CELLS}
-    assert moving_steps.of_cells(by_cells, "groove") == pytest.approx(0.5 / 8**2, rel=1e-12)
-
-
-def test_a_mirrored_track_is_the_same_and_another_one_is_off_by_its_change():
-    track = {"uz_m": [0.0, 1.0, 2.0, 4.0], "peeq_max": [0.0, 2.0, 1.0, 1.0]}
-    back = {name: values[::-1] for name, values in track.items()} | {"peeq_max": [1.0, 1.0, 1.5, 0.0]}
-    one, other = (Made({}, {"track": each, "history": {"fx_N": [1.0, 2.0]}}) for each in (track, back))
-    changed = moving_sphere.changed_by_turn(one, other)
-    assert changed == {"turned-groove": 0.0, "turned-peeq": 0.25, "turned-force": 0.0}

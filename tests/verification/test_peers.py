@@ -38,21 +38,6 @@ class TestProblems:
         assert (a, p0) == pytest.approx((ours.RADIUS_M, 3 * scene.body.plasticity.yield_stress), rel=1e-12)
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
 
-    def test_periodic_step_is_the_sphere_as_a_summit(self):
-        free = ours.scene_of(8, 4, 1e-3)
-        repeats = ours.repeated(free)
-        assert repeats.patch == (free.grid.cells, free.grid.extent) and repeats.grid.periodic == "xy"
-        x = (np.arange(8) + 0.5) / 8 * free.grid.extent[0] - free.grid.extent[0] / 2
-        summit = -np.add.outer(x**2, x**2) / (2 * free.counterbody.radius)
-        assert np.allclose(repeats.surface.path.values, summit, rtol=1e-12, atol=0.0)
-        assert (repeats.loading, repeats.body) == (free.loading, free.body)
-
-
-def test_cancelled_error_does_not_count():
-    """A largest pressure right by chance has the error of the discrete problem."""
-    p = problems.P0 * np.array([0.5, 1.0])
-    assert elastic.hertz_error(p, 0.0) == 0.0 and elastic.hertz_error(p, 3e-4) == 3e-4
-
 
 def timed(cells, seconds, label="", converged=True):
     """A measurement of one round."""
@@ -78,27 +63,6 @@ class TestTimes:
         assert peers.tamaas_to_error(made, "") == pytest.approx(10.0, rel=1e-12)
         never = peers.reached(made, 1e-9)
         assert never[SAM][1] is None and math.isnan(peers.ratio(never[TAMAAS][1], None))
-
-    def test_fastest_is_of_those_that_are_good_enough(self):
-        made = rows(sam=[(0.1, "loose"), (0.2, "tight")])
-        made["error"] = [1e-2, 1e-2, 1e-5, 1e-5]
-        assert peers.fastest(made, "10²")["seconds"][SAM] == 1.0
-        assert peers.fastest(made, "10²", 1e-4)["seconds"][SAM] == 2.0
-        (lost,) = running.rows_of("hertz", {SAM: [timed(10, 1.0, converged=False)]}, lambda _: 1.0)
-        assert math.isnan(lost["error"]) and math.isnan(lost["seconds"]) and lost["status"] == "not converged"
-
-
-def test_what_is_not_there_has_no_ratio():
-    """SAM alone, on one grid of the rough patch and two of the sphere."""
-    made = pd.concat([rows(sam=[(1e-3, "")]), rows(sam=[(1e-3, "")]).assign(sweep="rough", cells="1024²")])
-    made["floor"] = 0.0
-    for take in (peers.contact_mechanics_to_error, peers.contact_mechanics_on_finest):
-        assert math.isnan(take(made, ""))
-    assert all(math.isnan(take(made[:0], "")) for take in (peers.step_on_coarse, peers.step_on_fine))
-    tables = [table(made).rows for table in (peers.hertz_times, peers.rough_times, peers.step_times)]
-    assert [len(each) for each in tables] == [1, 1, 0] and tables[0][0][3] == tables[1][0][4] == "1"
-    plot = peers.over_time(None, made, "hertz")
-    assert "processor time" in plot.caption and plot.drawing.data
 
 
 def script(path: Path, text: str) -> Path:

@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from sam.scene.verdict import loop_places
 from tests.system.test_repeated_loading import MELAN, PRAGER, YIELD, pressed
 from verification.figures.check import findings
 from verification.figures.repeated import drawings_of
@@ -36,12 +34,3 @@ def test_every_figure_can_be_read_and_has_its_numbers(run):
         assert findings(drawing.figure) == []
     assert list(drawings["strain-per-period"].data["period"]) == [1, 2, 3, 4]
     assert drawings["strain-per-period"].data["class"][-1] == "alternating"
-
-
-def test_points_of_loops_are_different():
-    """The largest, and those nearest to a half and a tenth of it; by the strain so far if nothing flowed."""
-    flowed = np.array([0.0, 0.12, 1.0, 0.45, 0.9])
-    assert loop_places(flowed, flowed[::-1]) == [2, 3, 1]
-    assert loop_places(np.zeros(5), flowed[::-1]) == [2, 1, 3]
-    assert sorted(loop_places(np.zeros(3), np.zeros(3))) == [0, 1, 2]
-    assert len(loop_places(*np.ones((2, 1)))) == 1

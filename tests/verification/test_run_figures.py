@@ -197,17 +197,3 @@ class TestPlane:
         )
         (bar,) = (each for each in panel.collections if isinstance(each, QuadMesh))
         assert bar.get_clim() == (0.0, pytest.approx(largest))
-
-
-@pytest.mark.parametrize("model", [models.SAM, models.FEM])
-class TestCoated:
-    def test_the_interface_is_drawn_and_no_curve_crosses_it(self, model):
-        film = 1e6 * FILM["thickness"]
-        for panel in drawn("coated", model)["axis"].figure.axes:
-            curve, interface = panel.lines
-            assert np.ptp(interface.get_xdata()) == 0.0 and interface.get_xdata()[0] == pytest.approx(film)
-            z, values = curve.get_xdata(), curve.get_ydata()
-            known = np.isfinite(values)
-            both = known[1:] & known[:-1]
-            assert not ((z[:-1] < film * (1 - 1e-9)) & (z[1:] >= film * (1 - 1e-9)) & both).any()
-            assert (z[known] < film * (1 - 1e-9)).any() and (z[known] > film).any()

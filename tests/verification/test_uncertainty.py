@@ -3,7 +3,6 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +10,6 @@ from builders import PERFECT, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
-from samfem.compared import Uncertain
-from samfem.comparison_page import _uncertainties
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -362,8 +359,3 @@ def test_what_has_no_coarser_grid_is_refused(sphere, refused, change, words):
     solver = "" if "solver" in change else "[solver]\n"
     (sphere / "asked.toml").write_text(f"{text}{solver}uncertainty = true\n")
     assert words in refused("solve", "asked.toml")
-
-
-def test_a_difference_beyond_both_uncertainties_is_seen():
-    found = SimpleNamespace(uncertain=[Uncertain("p_max_Pa", each, 1.0, 2.0) for each in (3.0, 3.1)])
-    assert [row[-1] for row in _uncertainties(found)["rows"]] == ["True", "False"]

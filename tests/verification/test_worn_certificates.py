@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The conditions of a worn body: they hold in its last cycle, and each sees what is wrong."""
 
-from types import SimpleNamespace
-
-import numpy as np
 import pytest
 from made_results import with_field
 
@@ -35,15 +32,3 @@ def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
     assert film_checks.states(scene, loaded) > 1e-3  # strains since the first load
     through = contact_checks.flow(scene, records, choose_grid(scene).depths)  # also over the removal
     assert through["flow"] > 1e-2
-
-
-def test_a_record_is_counted_from_another_one():
-    def record(value: float) -> SimpleNamespace:
-        material = {"cells": np.ones((1, 1, 1), bool), "points": {"strain": np.full((6, 4, 1), value)}}
-        tree = {"state": {"material": material, "load": 1}, "last": {"stress": np.full((6, 1, 1, 1), value)}}
-        tree["extent"] = {"window": {"i0": 2, "j0": 3, "nx": 1, "ny": 1}}
-        return SimpleNamespace(tree=lambda: tree)
-
-    tree = study.since(record(1.0), record(3.0)).tree()
-    assert (tree["state"]["material"]["points"]["strain"] == 2.0).all() and tree["state"]["load"] == 1
-    assert (tree["last"]["stress"] == 2.0).all()
