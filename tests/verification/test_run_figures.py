@@ -2,7 +2,7 @@
 """What `samfem solve --figures` draws, read from the drawn artists: where the contact is, its largest value,
 and that number.
 
-A scene of each kind that is not a sphere in the middle: rough, elliptic, worn, coated, travelling; solved
+A scene of each kind that is not a sphere in the middle: wavy, elliptic, worn, coated, travelling; solved
 here, on few cells.
 """
 
@@ -28,21 +28,8 @@ SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1
 FILM = {"thickness": 0.5e-6, "young": 30e9, "poisson": 0.3}
 """So soft that near the axis its von Mises stresses are all above those of the body next to it."""
 SPHERE = {"shape": "sphere", "radius": 105e-6}
-ROUGH = {
-    "kind": "self-affine",
-    "ra": 0.1e-6,
-    "cutoff_long": 16e-6,
-    "cutoff_short": 8e-6,
-    "hurst": 0.8,
-    "seed": 3,
-}
-PATCH = {"cells": (24, 24), "extent": (16e-6, 16e-6)}
 WAVE = {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6}
 TRAVELLING = {"prescribed": "hertz", "p0": 2.5e9, "radius": 5e-6, "steps": 1}
-
-
-def path(start, end) -> dict:
-    return {"loading": TRAVELLING | {"path": {"start": start, "end": end, "steps": 2}}}
 
 
 def with_body(body: dict, **sections) -> dict:
@@ -59,31 +46,24 @@ SCENES = {
         grid={"cells": (65, 65)},
     ),
     "punch": with_body(BODY, counterbody={"shape": "punch", "radius": 5e-6}, grid={"cells": (33, 33)}),
-    "rough": with_body(BODY, counterbody={"shape": "flat"}, surface=ROUGH, grid=PATCH | {"border": "relief"}),
     "cut off": with_body(
         BODY, counterbody={"shape": "flat"}, surface=WAVE, grid={"cells": (32, 32), "extent": (16e-6, 16e-6)}
     ),
     "coated": with_body(BODY | {"coating": FILM}, counterbody=SPHERE, grid={"cells": (33, 33)}),
     "travelling": with_body(
-        SOFT, **path((-3e-6, 0.0), (4e-6, 3e-6)), grid={"cells": (31, 31), "extent": (30e-6, 30e-6)}
-    ),
-    "sliding": with_body(
-        BODY, counterbody=SPHERE, friction={"coefficient": 0.4}, fem={"cells_per_radius": 4, "box": 4}
+        SOFT,
+        loading=TRAVELLING | {"path": {"start": (-3e-6, 0.0), "end": (4e-6, 3e-6), "steps": 2}},
+        grid={"cells": (31, 31), "extent": (30e-6, 30e-6)},
     ),
 }
-AXISYMMETRIC = {"fem": {"cells_per_radius": 8, "box": 5}}
 
 
 @cache
-def run_of(name: str, model: str = models.SAM) -> Run:
-    """A solved scene with its figures, read back from files that stay until the tests end."""
-    scene = (
-        running_in()
-        if name == "worn"
-        else Scene(**SCENES[name] | (AXISYMMETRIC if model == models.FEM else {}))
-    )
+def run_of(name: str) -> Run:
+    """A scene solved by SAM, read back from files that stay until the tests end."""
+    scene = running_in() if name == "worn" else Scene(**SCENES[name])
     folder = TemporaryDirectory()
-    write_run(models.solve(scene, model), scene, folder.name, {})
+    write_run(models.solve(scene, models.SAM), scene, folder.name, {})
     _FOLDERS.append(folder)
     return read_run(folder.name)
 
@@ -92,12 +72,12 @@ _FOLDERS: list[TemporaryDirectory] = []
 
 
 @cache
-def drawn(name: str, model: str = models.SAM) -> dict:
-    return drawings_of(run_of(name, model))
+def drawn(name: str) -> dict:
+    return drawings_of(run_of(name))
 
 
-def panel_of(name: str, figure: str, model: str = models.SAM, k: int = 0):
-    return drawn(name, model)[figure].figure.axes[k]
+def panel_of(name: str, figure: str):
+    return drawn(name)[figure].figure.axes[0]
 
 
 def mesh_of(panel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
