@@ -5,7 +5,6 @@ import hashlib
 import io
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -321,21 +320,3 @@ def test_every_text_can_be_printed_in_every_language(encoding, errors, text, wri
     print_anything(stream)
     stream.write(text)
     assert raw.getvalue() == written
-
-
-def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(folder):
-    name = os.fsdecode("n\u00f6".encode())
-    text = (folder / "coarse.toml").read_text(encoding="utf-8").replace("title = ", 'title = "\u00b5" # ')
-    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    program = "import sys; from samfem.cli import main; from verification.text import console\n"
-    program += "console.QUIET_S = 1e9  # however slow the machine is\n"
-    program += (
-        "print([main([*words.split(), sys.argv[1]]) for words in ('plan --verbose', 'solve --out out')])"
-    )
-    command = [sys.executable, "-c", program, f"{name}.toml"]
-    done = subprocess.run(command, capture_output=True, env=os.environ | language, check=True)
-    # of the solve: by how much the model is off, and nothing else
-    assert [b"small strains" in line for line in done.stderr.splitlines()] == [True], done.stderr
-    assert done.stdout.endswith(b"[0, 0]\n") and b"?" in done.stdout
-    assert set(read_run(folder / "out").summary["provenance"]["input_sha256"]) == {"n\u00f6.toml"}

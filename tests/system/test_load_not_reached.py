@@ -14,15 +14,13 @@ from builders import HARDENING, PERFECT, SWIFT, SWIFT_YIELD, hertz_force, scene 
 
 import fem_reference
 import sam
-from fem_reference import spatial
 from fem_reference.axisymmetric.model import Model
 from fem_reference.common import loading
 from sam.plasticity import history, load_step as plastic_step
 from sam.scene import Status
-from sam.scene.result import LAST, PEAK
+from sam.scene.result import LAST
 from samfem.cli import main
 from verification.figures import space
-from verification.runs.files import of_last_load, read_run
 
 
 def plastic(ratio, law=SWIFT, cells=33, *, grid=None, **loading):
@@ -114,17 +112,6 @@ def test_axisymmetric_cut_limit(monkeypatch, reached):
     assert result.last_fitting["force_N"] == pytest.approx(reached * scene.loading.force, rel=1e-9)
 
 
-def test_three_dimensional_cut_limit(monkeypatch):
-    """mu p0 is beyond the shear strength of the film."""
-    monkeypatch.setattr(loading, "MOST_CUTS", 0)
-    film = {"thickness": 0.15e-6, "young": 80e9, "poisson": 0.3, "yield_stress": 0.67e9}
-    given = {"prescribed": "hertz", "p0": 5e9, "radius": 3e-6}
-    mesh = {"cells_per_radius": 2, "box": 3.0}
-    result = spatial.solve(small_scene(body={"coating": film}, loading=given, friction=0.1, fem=mesh))
-    assert result.status == "step-cut-limit"
-    says_what_was_reached(result, np.inf)
-
-
 @pytest.fixture(scope="module")
 def solved(tmp_path_factory):
     """Folder of the result of a plastic sphere on a grid of its own that is too shallow, and what
@@ -151,11 +138,3 @@ def test_solve_says_at_which_load_its_numbers_are(solved):
     assert lines[0].startswith("plastic-zone-at-grid-edge in ")
     assert lines[1] == f"the peak load was not reached; at the last load that fitted, {force:.6g} N:"
     assert "plastic-zone-at-grid-edge" in error and (out / "figures" / "mises.png").exists()
-
-
-def test_its_figures_are_of_that_load(solved):
-    run = read_run(solved[0])
-    drawn = of_last_load(run)
-    assert drawn.quantities == run.last_fitting and set(drawn.tables["axis"]["state"]) == {PEAK}
-    assert np.array_equal(drawn.tables["axis"]["mises_Pa"], run.tables["axis"]["mises_Pa"])
-    assert set(run.tables["axis"]["state"]) == {LAST}

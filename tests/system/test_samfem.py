@@ -19,7 +19,6 @@ from samfem import cli, python
 from samfem.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-BALL = {"shape": "sphere", "radius": "105 um"}
 STEEL = {"young": "210 GPa", "poisson": 0.3}
 
 
@@ -63,14 +62,6 @@ def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
                 assert all(np.array_equal(fields[name], others[name], equal_nan=True) for name in fields)
     with pytest.raises(samfem.FolderError, match="no mesh edge-unloaded: it has surface, fields,"):
         solved.mesh("edge", unloaded=True)
-
-
-def test_a_run_is_shown_short_and_as_html(run):
-    assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 125
-    page = run._repr_html_()
-    assert page.count("<details") == page.count("</details>") == 3 and "8.46" in page and "history" in page
-    titled = samfem.Scene(title="<script>", body=STEEL, counterbody=BALL, loading={"force": 0.1})
-    assert "<script" not in samfem.solve(titled)._repr_html_()
 
 
 def test_warnings_are_listed_shown_and_issued():

@@ -1,17 +1,11 @@
 """What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one."""
 
-import json
-
 import numpy as np
 import pytest
-from fake_case import FakeCase
 from matplotlib.ticker import FixedLocator
 
-from samfem.publishing import report
-from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
-from verification.figures.style import BLUE, VERMILION, Drawing, sheet
-from verification.suite import verify
+from verification.figures.style import BLUE, VERMILION, sheet
 
 X = np.linspace(0.0, 10.0, 21)
 
@@ -89,30 +83,3 @@ def test_a_map_without_colour_bar_is_found():
     with sheet(4.0, 3.0) as (figure, axis):
         axis.pcolormesh(X, X, np.outer(X, X))
     assert "have no colour bar" in " ".join(findings(figure))
-
-
-@pytest.mark.parametrize(("draw", "code"), [(lambda figure, axis: None, 0), (touching, 1)])
-def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
-    tmp_path, monkeypatch, capsys, draw, code
-):
-    def does(context):
-        with sheet(4.0, 3.0) as (figure, axis):
-            good(figure, axis)
-            draw(figure, axis)
-        plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Caption")
-        return Outcome(figures=[context.save(plot)])
-
-    own = FakeCase("own", "Own", "Is it read?", does=does)
-    monkeypatch.setattr(verify, "all_cases", lambda: {"own": own})
-    assert verify.main(["own"], "quick", tmp_path / "out") == code
-    drawn = tmp_path / "out" / "figures" / "own-curve.pdf"
-    assert report(tmp_path / "out", pdf=True) == 0 and drawn.read_bytes()[:5] == b"%PDF-"
-    case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
-    assert case["status"] == ("failed" if code else "passed")
-    assert bool(case["figures"][0]["findings"]) == bool(code)
-    line = "figures/own-curve.png: the texts 'the first' and 'the second' collide"
-    said = capsys.readouterr().out
-    assert (line in said) == bool(code) and str(drawn) in said.splitlines()
-    pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
-    assert ("cannot be read" in pages) == bool(code)
-    assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from made_results import of_frame, red
 
 from sam.scene import load_scene
 from verification.cases import all_cases
@@ -139,33 +138,9 @@ def study(problem, own=None, change=lambda rows: rows) -> pd.DataFrame:
     return pd.DataFrame(case.with_errors(problem, scene, change(rows)))
 
 
-def of_grid(rows: pd.DataFrame) -> pd.DataFrame:
-    return rows[rows["refined"] == "resolution"]
-
-
 @pytest.fixture(scope="module")
 def every() -> pd.DataFrame:
     return pd.concat(map(study, case.STUDIED.values()))
-
-
-def red_with(every: pd.DataFrame, changed: pd.DataFrame) -> set[str]:
-    """The rows that are red where a problem has other solves."""
-    frame = pd.concat([every[every["sweep"] != changed["sweep"].iloc[0]], changed])
-    return red("work-precision", of_frame("work-precision", frame), whole=True)
-
-
-def test_the_ratio_is_taken_at_the_smallest_error_that_both_reach(every):
-    """3D ends at 0.5/32 = 1.6 % after 512 s, where SAM, 0.3/n, has 19.2 cells: a sixtieth of a power. Below
-    what is known of the reference no methods are compared.
-    """
-    rows = of_grid(every[every["sweep"] == "friction-0-2"])
-    ratio, error = case.faster(rows, SPATIAL)
-    assert error == pytest.approx(0.5 / 32, rel=0.01) and case.faster_than_spatial(rows, "") == ratio
-    assert ratio == pytest.approx(512.0 / case.reached(rows, COUPLED, error).value)
-    assert math.isnan(case.faster(rows, AXISYMMETRIC)[0])  # has no such model
-    assert case.faster(rows.assign(floor=0.05), SPATIAL)[1] == pytest.approx(0.15)
-    lost = study(SLIDING, change=lambda own: [{**r, "values": {}} if r["cpu_s"] == 512 else r for r in own])
-    assert "friction-0-2-faster" in red_with(every, lost)
 
 
 def test_tables_and_advice_of_a_study(every):

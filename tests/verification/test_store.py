@@ -213,13 +213,6 @@ def test_no_flipped_byte_and_no_shortened_file_gives_another_result(kept, coarse
         assert found.result is None and found.note.startswith("damaged: ") and str(path) in found.note
 
 
-def test_an_entry_under_another_name_is_damage(kept):
-    (sam,), (fem,) = ([entry.path for entry in kept.entries() if entry.what == model] for model in BOTH)
-    shutil.copy(fem, sam)
-    assert "holds something else than its name says" in kept.lookup(COARSE, models.SAM).note
-    assert sorted(entry.state for entry in kept.entries()) == ["current", "damaged"]
-
-
 # faults and company
 
 

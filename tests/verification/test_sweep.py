@@ -4,11 +4,9 @@
 import csv
 import json
 import os
-import time
 from concurrent.futures import Future
 from contextlib import nullcontext
 from pathlib import Path
-from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
@@ -25,7 +23,6 @@ from verification.runs.files import read_run
 from verification.runs.store import FOLDER
 from verification.runs.study import read_study
 from verification.sensitivity import indices
-from verification.text.console import Progress
 
 COARSE = "[grid]\ncells = [17, 17]\n"
 FORCES = [0.1, 0.2, 0.3, 0.4]
@@ -194,27 +191,6 @@ def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figur
     assert Path("out/sensitivity.png").stat().st_size > 1000
 
 
-@pytest.mark.usefixtures("same_worker")
-def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
-    monkeypatch.setenv(FOLDER, str(folder / "store"))
-    (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
-    first = sweep_of("out", code=1)
-    rows = Path("out/sweep.csv").read_bytes()
-    monkeypatch.setattr(Processes, "submit", lambda *_: pytest.fail("solved"))
-    again = sweep_of("out", code=1)
-    assert (first["counts"]["not_converged"], again["counts"]["reused"]) == (4, 4)
-    assert Path("out/sweep.csv").read_bytes() == rows
-
-
-@pytest.mark.usefixtures("same_worker")
-def test_runs_of_an_older_study_are_removed(folder, no_figure):
-    sweep_of("out")
-    (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
-    sweep_of("out")
-    assert [path.name for path in sorted(Path("out/runs").iterdir())] == ["0", "1"]
-    assert read_run(Path("out/runs/0")).scene.loading.force == 0.3 and len(table("out")) == 2
-
-
 def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(
     folder, no_figure, samfem, monkeypatch
 ):
@@ -278,10 +254,6 @@ def test_tasks_run_in_processes_with_one_thread_each_and_leave_ours_alone(monkey
     assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 
-def test_a_task_that_raises_is_a_failure_with_its_words(pool):
-    assert outcomes(pool, functions.fail, {0: (1.0,)}) == {0: Failure("ZeroDivisionError: on purpose")}
-
-
 class Neighbours:
     """An executor that blames two tasks when one of them dies, as a cluster may: the pair of 1 and 2 dies."""
 
@@ -310,16 +282,6 @@ class Neighbours:
 def test_a_neighbour_of_a_deadly_task_is_not_blamed():
     found = outcomes(Neighbours(), functions.double, {k: (k,) for k in range(8)})
     assert found == {k: 2.0 * k for k in range(8)} | {1: Failure(WORKER_DIED)}
-
-
-def test_plain_progress_says_how_long_it_will_take(capsys, monkeypatch):
-    clock = SimpleNamespace(now=0.0)
-    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
-    with Progress(remaining=True) as progress:
-        for clock.now, done in ((2.0, 1), (12.0, 3), (132.0, 4)):  # the pace counts from the first call
-            progress("sweep", done, 11)
-    said = capsys.readouterr().err.splitlines()
-    assert said == ["sweep: 1 of 11", "sweep: 3 of 11, about 40 s left", "sweep: 4 of 11, about 5.1 min left"]
 
 
 # Dask
