@@ -24,7 +24,7 @@ from sam.scene import LeftOut
 from samfem.cli import main
 from verification.runs import models
 from verification.runs.files import read_run
-from verification.text.console import Progress, digits, followed, print_anything, print_table
+from verification.text.console import Progress, digits, print_anything, print_table
 
 
 @pytest.fixture
@@ -274,29 +274,6 @@ def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatc
         progress("case 2 of 3: contact", 0, 0, ", about 9 s left")
     said = "contact: 2 of 4\ncontact: 4 of 4\ncase 2 of 3: contact, about 9 s left\n"
     assert capsys.readouterr().err == said
-
-
-def test_a_notebook_shows_one_bar_that_moves(monkeypatch, capsys):
-    shown = []
-    handle = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
-
-    def display(data, raw, **_):
-        handle.update(data, raw)
-        return handle
-
-    shell = SimpleNamespace(kernel=object())
-    notebook = SimpleNamespace(get_ipython=lambda: shell, display=SimpleNamespace(display=display))
-    monkeypatch.setitem(sys.modules, "IPython", notebook)
-    clock = SimpleNamespace(now=0.0)
-    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
-    with followed(None) as progress:
-        for clock.now, done in ((0.5, 1), (1.5, 2), (1.6, 3), (1.65, 4)):
-            progress("contact", done, 4)
-    assert shown == ["contact: 2 of 4, about 2 s left", "contact: 4 of 4"] and not capsys.readouterr().err
-    shell.kernel = None
-    with followed(None) as progress:
-        progress("contact", 1, 4)
-    assert len(shown) == 2 and not isinstance(progress, Progress)
 
 
 def test_tables_are_aligned_and_keep_brackets(capsys):

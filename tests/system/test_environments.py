@@ -4,8 +4,7 @@ goes on.
 """
 
 import pytest
-import run_environments
-from run_environments import NotHereError, environments, main, probe
+from run_environments import environments, main
 
 PLAIN = {"numpy": ["Haswell"], "scipy": ["Haswell"], "threads": [1], "features": ["AVX2"], "cores": 2}
 SUITE = """import os, pytest
@@ -26,16 +25,6 @@ def test_a_failure_in_one_environment_is_told_and_does_not_stop_the_next(tmp_pat
     assert passed.startswith("| dumb |") and "| 2 passed, 1 skipped in " in passed
     assert "def test_language" in capsys.readouterr().out  # with the output of pytest
     assert main(["dumb", *words, "-k", "nonesuch"]) == 1  # no tests
-
-
-def test_a_kernel_that_the_processor_cannot_run_is_not_run(monkeypatch, tmp_path):
-    """As SkylakeX where there is no AVX-512: the probe ends by a signal."""
-    monkeypatch.setattr(run_environments, "PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGILL)")
-    dumb, words = environments()["dumb"], "SIGILL: this processor cannot run the kernel"
-    with pytest.raises(NotHereError, match=words):
-        probe(dumb, run_environments.ROOT, tmp_path)
-    row, failed = run_environments.run("dumb", dumb, PLAIN, (), tmp_path)
-    assert row[-1].startswith("not run: ") and words in row[-1] and not failed
 
 
 @pytest.mark.parametrize(

@@ -10,22 +10,16 @@ import numpy as np
 import pytest
 from builders import HARDENING, SHAPES, SPHERE_TEXT, YIELD_CURVE, scene
 
-import sam
 from sam.grid.cells import CellGrid
 from sam.planner import bodies
-from sam.planner.bodies import Opposite
-from sam.planner.make import UnsupportedScene, check
 from sam.scene import load_scene
 from sam.scene.body import LAWS
 from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES
 from verification.checks.conditions import GAPS
 from verification.checks.material import yield_stress
-from verification.cost.advice import advice_of
-from verification.cost.estimates import plastic_boxes
 
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs" / "guide" / "scenes.md").read_text()
-FILM = {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -52,21 +46,3 @@ def test_every_shape_has_the_same_gap_in_the_checks_and_is_in_the_guide(shape):
     gap = bodies.SHAPES[shape].gap(other).gap(grid)
     np.testing.assert_allclose(GAPS[shape](other, x, y)[~edge], gap[~edge], rtol=1e-14)
     assert f'`"{shape}"`' in GUIDE
-
-
-def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
-    monkeypatch.setitem(
-        bodies.SHAPES, "cone", Opposite(lambda _: None, lambda found, _: (2e-6 * bool(found.force),) * 2)
-    )
-
-    def cone(**tables):
-        found = scene(**tables)
-        shape = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
-        return found.model_copy(update={"counterbody": shape})
-
-    coated = sam.plan(cone(body={"coating": FILM})).grid
-    assert 0.6e-6 < coated.nx * coated.hx / 4 < 6e-6
-    yielding = cone(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
-    assert plastic_boxes(yielding, sam.plan(yielding)) and advice_of(yielding, ["sam"])["kind"] is None
-    with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
-        check(cone(loading={"force": 0.0}))

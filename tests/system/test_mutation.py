@@ -3,9 +3,7 @@
 its gates turn red.
 """
 
-import json
 import sys
-from dataclasses import replace
 from functools import _lru_cache_wrapper
 from types import FunctionType
 
@@ -13,13 +11,10 @@ import numpy as np
 import pytest
 
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
-from verification.cases.robustness import mutation as case
-from verification.judging import evaluate
-from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, scope
+from verification.robustness.mutants import frozen, inject, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
-from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache
@@ -192,39 +187,3 @@ def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
     assert scope.drawn(one) == scope.drawn(moved)
     drawn = [scope.drawn(m) for name in scope.modules() for m in mutants_of(name) if not scope.whole(m)]
     assert np.mean(drawn) == pytest.approx(scope.PERCENT / 100, abs=0.03)
-
-
-MUTANT = Mutant("sam.contact.normal", "number", "f", 1, "2.0", 3, "return 2.0 * x")
-KILLED, SURVIVED = (
-    MutantVerdict(MUTANT, "killed", "tests/a.py::b", 0.2, "assert", 1),
-    MutantVerdict(MUTANT, "survived"),
-)
-SHOWN = equivalent.Shown(MUTANT, "where an iteration starts", 0.5, 2)
-GOOD = {"judged": [KILLED] * 40, "shown": [SHOWN], "control": [], "lost": {}, "gone": []}
-GOOD |= {"tests": 2, "seconds": 1.0}
-
-
-def read_back(answer, tmp_path, monkeypatch):
-    """What the case reads of the file that the program writes of a check."""
-    monkeypatch.setattr(mutation, "check", lambda *_: answer)
-    monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
-    mutation.main()
-    return json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "gate"),
-    [
-        ({}, ""),
-        ({"judged": [KILLED] * 9 + [SURVIVED]}, "mutation.killed"),
-        ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "mutation.unexplained"),
-        ({"shown": [replace(SHOWN, change=50.0)]}, "mutation.not-inert"),
-        ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
-        ({"judged": [replace(KILLED, seconds=1.2)] * 40}, "mutation.slowest-kill"),
-    ],
-)
-def test_what_is_wrong_turns_its_gate_red(wrong, gate, tmp_path, monkeypatch):
-    found = read_back(GOOD | wrong, tmp_path, monkeypatch)
-    rows = [row for row in load_rows() if row.case == "mutation"]
-    red = {v.row.id for v in evaluate(rows, {"mutation": case.CASES[0].values(found)}) if not v.passed}
-    assert red == ({gate} if gate else set())

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from builders import scene_text
 
-from sam.scene.checkpoint import Checkpoint
 from samfem.cli import main
 from verification.runs import checkpoints, models
 from verification.runs.archive import read_archive, write_archive
@@ -200,25 +199,6 @@ def test_an_interval_that_is_no_number_of_seconds_is_refused(solve, monkeypatch,
     monkeypatch.setenv(checkpoints.INTERVAL, text)
     assert f"SAMFEM_CHECKPOINT_S = {text}: a number of seconds >= 0 is needed" in solve(code=2).err
     assert not OUT.exists()
-
-
-@pytest.mark.parametrize(("duration", "pause"), [(1.0, 50.0), (0.01, 5.0)])
-def test_writing_takes_a_small_share_of_the_time(tmp_path, monkeypatch, duration, pause):
-    """One that takes 1 s is followed by the next after 50 s; a fast one after the interval."""
-    clock, times = [0.0], []
-
-    def write(*_):
-        times.append(clock[0])
-        clock[0] += duration
-
-    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(checkpoints, "write_archive", write)
-    writer = checkpoints.Writer(tmp_path, {}, 5.0, None, warn=pytest.fail)
-    for k in range(2000):
-        clock[0] += 0.1
-        writer(Checkpoint(SAM, {}, {"done": k, "total": 2000}))
-    gaps = np.diff(times) - duration
-    assert gaps.size and gaps.min() >= pause - 1e-6 and gaps.max() < pause + 0.2
 
 
 def test_a_folder_with_a_checkpoint_alone_is_the_folder_of_a_run(tmp_path):

@@ -23,7 +23,6 @@ from sam.scene.section import OTHER_NAMES, Section, places_of
 from samfem.cli import CLAIMS
 from verification.runs import models
 from verification.runs.study import read_study
-from verification.text.readable import in_working_unit, with_prefix, with_time
 
 
 def advice(scene: Scene, status: Status) -> str:
@@ -117,25 +116,6 @@ class TestClaim:
         assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
         samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
-
-
-def test_values_and_times_for_a_person():
-    for value, unit, text in (
-        (1.2e13, "B", "12 TB"),
-        (9.999e8, "B", "1 GB"),
-        (0.0, "B", "0 B"),
-        (8.62e-6, "m", "8.62 um"),
-        (999.9e-9, "m", "1 um"),
-        (-2.5e9, "Pa", "-2.5 GPa"),
-        (1e-20, "m", "1e-08 pm"),
-        (float("inf"), "m", "inf m"),
-    ):
-        assert with_prefix(value, unit) == text
-    sizes = [("contact_area_m2", 2.45781e-7, None), ("p_max_Pa", 5e7, None), ("approach_m", 3e-8, 2e-3)]
-    shown = [in_working_unit(name, value, beside=beside)[1] for name, value, beside in sizes]
-    assert shown == ["0.245781 mm^2", "50 MPa", "3e-05 mm"]
-    times = [with_time(seconds) for seconds in (0.0123, 99.0, 150.0, 9e4, 1e6)]
-    assert times == ["0.012 s", "99 s", "2.5 min", "25 h", "12 days"]
 
 
 @pytest.mark.parametrize(

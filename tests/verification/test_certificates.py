@@ -403,23 +403,6 @@ def test_only_what_has_a_yield_stress_is_held_to_the_flow_rule():
         assert found == pytest.approx({"flow": 0.0, "consistency": excess, "yield": excess}, abs=1e-12)
 
 
-def test_a_step_in_which_the_box_moves_is_not_held_to_the_flow_rule():
-    def tree(peeq, extent):
-        points = {"strain": 1.5 * peeq * DEVIATOR[..., None] * np.ones((6, 4, 4))}
-        points["peeq"] = np.full((4, 4), peeq)
-        material = {"cells": np.ones((1, 2, 2), bool), "points": points}
-        made = {"extent": extent, "state": {"material": material}, "parts": {"count": 0}}
-        made["last"] = {"stress": 1e9 * UNIAXIAL[..., None, None] * np.ones((6, 1, 2, 2))}
-        return SimpleNamespace(tree=lambda: made)
-
-    def flow(extent):
-        steps = [tree(0.0, (0, 0)), tree(1e-3, extent)]
-        return contact_checks.flow(small_scene(body={"plasticity": PERFECT}), steps, np.array([1e-6]))
-
-    assert flow((0, 0)) == pytest.approx({"flow": 0.0, "consistency": 0.0, "yield": 0.0}, abs=1e-12)
-    assert flow((0, 1)) == {}
-
-
 class TestHistories:
     """What is kept of the iterations, and why they ended."""
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Growth of time and memory: exponents, processes that measure themselves alone, the published code."""
 
-import json
 import os
-import subprocess
 
 import numpy as np
 import pandas as pd
@@ -12,7 +10,6 @@ from builders import PERFECT, SWIFT, scene
 from made_results import of_frame, red
 
 from sam.scene import parse_scene
-from verification.cases.case import Context
 from verification.cases.cost import published_code
 from verification.cost import estimates, growth
 from verification.cost.measured import alone, idle_bytes
@@ -90,60 +87,6 @@ def test_every_count_has_a_factor():
 
 
 # against the published code
-
-PROGRAM = """
-import json, os
-def main():
-    with open({log!r}, "a") as log:
-        log.write({name!r} + open("scene.toml").read() + os.environ["OMP_NUM_THREADS"])
-    os.mkdir("run")
-    cost = {{"cpu_s": 1.0, "peak_memory_bytes": {memory}, "ffts": 40, "newton_iterations": None}}
-    found = {{"cost": cost, "quantities": {{"force_N": 1.0}}, "scene": {{"solver": {{"tolerance": 1e-3}}}}}}
-    json.dump(found, open("run/summary.json", "w"))
-    return {code}
-"""
-
-
-def test_both_codes_solve_the_published_scene_in_turns_and_a_loss_is_named(tmp_path, monkeypatch):
-    log, root = tmp_path / "log", tmp_path / "root"
-    for folder in ("samfem", "reports", "verification/scenes"):
-        (root / folder).mkdir(parents=True)
-    cli, report = root / "samfem/cli.py", root / "reports/results.json"
-    (root / "pyproject.toml").write_text('[project]\n[project.scripts]\nsamfem = "samfem.cli:main"\n')
-    (root / "verification/scenes/small.toml").write_text("cells = 9\nsteps = 2\n")
-    monkeypatch.setattr(published_code, "ROOT", root)
-    monkeypatch.setattr(published_code, "RUNGS", (published_code.Rung("small", "small", {"cells": "3"}),))
-    assert published_code.published() == "" and "with its history" in published_code.missing()
-
-    def git(*words: str) -> str:
-        named = ("-c", "user.name=n", "-c", "user.email=e", "-C", str(root))
-        return subprocess.run(
-            ["git", *named, *words], check=True, capture_output=True, text=True
-        ).stdout.strip()
-
-    cli.write_text(PROGRAM.format(log=str(log), name="old ", memory=10**8, code=0))
-    git("init", "--quiet")
-    git("add", ".")
-    git("commit", "--quiet", "--message", "published")
-    cli.write_text(PROGRAM.format(log=str(log), name="new ", memory=125 * 10**6, code=0))
-    (root / "verification/scenes/small.toml").write_text("cells = 10\n")
-    head = git("rev-parse", "HEAD")
-    growing = {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}}
-    broken_off = {"name": "published-code", "tables": [], "reused": None}
-    report.write_text(json.dumps({"provenance": {"commit": head}, "cases": [growing, broken_off]}))
-    assert published_code.published() == "0" * 40 and "with its history" in published_code.missing()
-    report.write_text(report.read_text().replace("[]", "[[]]"))
-    assert published_code.published() == head and published_code.missing() == ""
-    context = Context("published-code", tmp_path, "full", lambda *_: None)
-    (row,) = published_code.frame(context)
-    assert log.read_text() == "old cells = 3\nsteps = 2\n1new cells = 3\nsteps = 2\n1" * published_code.PAIRS
-    assert row["memory ratio"] == 1.25 and row["counts"] == "equal" and row["time ratio"] > 0.0
-    time, memory = published_code.losses(pd.DataFrame([row | {"time ratio": 1.1}])).rows
-    assert time[1:] == ("1.10", "in small; in no scene more than 1.2")
-    assert memory[1:] == ("1.25", "more than 1.2 in small (1.25)")
-    cli.write_text(PROGRAM.format(log=str(log), name="", memory=1, code=1))
-    with pytest.raises(RuntimeError, match="small, this code"):
-        next(published_code.frame(context))
 
 
 def took(time: float = 1.0, ffts: int = 100, **quantities) -> dict:

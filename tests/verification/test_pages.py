@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The pages: whether they can be read, and whether their answers are those of the results."""
 
-import copy
 import json
 import re
 from fnmatch import fnmatch
@@ -109,12 +108,6 @@ def test_every_question_asks_for_gates_and_cases_that_there_are():
     assert all(re.fullmatch(r"(10\.[0-9]{4,}/\S+)?", work["doi"]) for work in works())
 
 
-def changed(results, gate, **values):
-    new = copy.deepcopy(results)
-    next(each for each in new["gates"] if each["id"] == gate).update(values)
-    return new
-
-
 def test_the_published_index_answers_every_question(evidence):
     answers = answers_of(evidence)
     silent = [answer for answer in answers if not answer.findings]
@@ -125,32 +118,3 @@ def test_the_published_index_answers_every_question(evidence):
         for kind, *part in question.get("parts", ()):
             if kind == "cell" and part[1] in evidence.stored.ran:
                 assert len(list(cell(evidence, *part))) == 1, part
-
-
-def answer_to(results, words):
-    answers = answers_of(evidence_of(results))
-    return next(answer for answer in answers if answer.question["words"].startswith(words))
-
-
-def test_an_answer_is_the_worst_of_its_gates_or_that_none_ran(results):
-    words, gate = "Do SAM and FEM agree on rough", "rough-contact-0-2.load-3"
-    held = answer_to(results, words)
-    load, gates = held.findings[0], int(held.badge.split()[0])
-    assert "(24 comparisons, half of them within 0.22" in load.words
-    assert (
-        answer_to(results, "Do SAM and FEM give the same pr").findings[-1].words.endswith("(3 comparisons)")
-    )
-    assert held.badge == f"{gates} of {gates} gates"
-    assert load.allowed == "≤ 1\N{NO-BREAK SPACE}%"
-    assert load.worst.name != "rough-contact-0-2" and load.red == []
-    failed = answer_to(changed(results, gate, error=0.031, status="failed"), words)
-    (load, *_) = failed.findings
-    assert (load.value, load.worst.name, load.red) == ("3.1\N{NO-BREAK SPACE}%", "rough-contact-0-2", [gate])
-    assert (failed.status, failed.badge) == ("failed", f"{gates - 1} of {gates} gates")
-    new = copy.deepcopy(results)
-    next(case for case in new["cases"] if case["name"] == "peers")["status"] = "not run"
-    answer = answer_to(new, "How does samfem compare")
-    assert (answer.findings, answer.status, answer.cost) == ([], "not run", "")
-    assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "full level"
-    next(case for case in new["cases"] if case["name"] == "peers")["unmet"] = "run only when named"
-    assert answer_to(new | {"level": "quick"}, "How does samfem compare").status == "only when named"

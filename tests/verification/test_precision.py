@@ -15,8 +15,7 @@ from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.cost import work_precision as case, work_precision_problems as problems
 from verification.cases.cost.work_precision_problems import AXISYMMETRIC, COUPLED, SPATIAL, TWICE
-from verification.cases.sweep import tables_of
-from verification.cost.advice import NEVER, read_rows, table_text
+from verification.cost.advice import read_rows
 from verification.cost.precision import Ladder, Reached, agreed, at_error, bracket, limit_of
 from verification.figures.style import save
 from verification.figures.work_precision import overview
@@ -112,8 +111,6 @@ OF |= {
     "SAM, the paper's loop": (3.0, 1.0, 1e-3),
 }
 """Method -> factor, order and seconds: errors factor/n^order at seconds n^2."""
-SMOOTH = {COUPLED: (0.2, 2.0, 1e-3), SPATIAL: (-0.5, 1.0, 1.0)}
-"""The same of elastic contacts and of those that only yield."""
 
 
 def made(name: str, of: tuple, values: dict, refined: str = "resolution") -> list[dict]:
@@ -125,43 +122,6 @@ def made(name: str, of: tuple, values: dict, refined: str = "resolution") -> lis
         | {"values": {quantity: size * (1.0 + factor / n**order) for quantity, size in values.items()}}
         for n in (4, 8, 16, 32)
     ]
-
-
-def study(problem, own=None, change=lambda rows: rows) -> pd.DataFrame:
-    """Of made solves; own: methods that differ; change: of the rows before errors are taken."""
-    scene = scene_of(problem)
-    values = VALUES | problem.exact(scene) if problem.exact else VALUES
-    of = OF | (SMOOTH if problem.name != "friction-0-2" else {}) | (own or {})
-    rows = [row for each in problem.methods for row in made(each.name, of[each.name], values)]
-    if problem.steps:
-        rows += made(COUPLED, (0.5, 1.0, 0.01), values, case.STEPS)
-    return pd.DataFrame(case.with_errors(problem, scene, change(rows)))
-
-
-@pytest.fixture(scope="module")
-def every() -> pd.DataFrame:
-    return pd.concat(map(study, case.STUDIED.values()))
-
-
-def test_tables_and_advice_of_a_study(every):
-    some = every[every["sweep"].isin(["hertz", "friction-0-2"])]
-    rows = list(case.advice_rows(some))
-    coarse = {(row.method, row.bound) for row in rows if row.kind == HERTZ.kind and row.error == 0.05}
-    assert coarse == {("sam", "<"), ("fem-axisymmetric", "<"), ("fem-3d", "")}
-    one = next(r for r in rows if (r.kind, r.method, r.error) == (HERTZ.kind, "fem-axisymmetric", 0.01))
-    assert one.relative == pytest.approx(2.0, rel=1e-6)
-    assert one.resolution == pytest.approx(np.sqrt(20.0), rel=1e-4)
-    assert one.kernels == pytest.approx(10.0 * one.seconds)
-    (steps,) = (row for row in rows if row.method == "load steps" and row.error == 0.05)
-    assert steps.resolution == pytest.approx(10.0, rel=0.01) and any(row.bound == NEVER for row in rows)
-    assert table_text(read_rows(table_text(rows))) == table_text(rows)
-    own = (case.times, case.beside_elements, case.references)
-    tables = [*(table(some) for table in own), *tables_of(FILE, some)]
-    assert len(tables) == 5 and all(len(row) == len(t.columns) for t in tables for row in t.rows)
-    assert any("not reached (1.6 %)" in row for row in case.times(some).rows)
-    (of_hertz, of_friction) = (times for _, _, times in case.to_one_percent(some)["times"])
-    assert of_hertz["FEM, axisymmetric"][0] == pytest.approx(one.seconds) and not of_hertz["SAM"][1]
-    assert of_friction["FEM, 3D"] == (None, False)
 
 
 def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_answer():

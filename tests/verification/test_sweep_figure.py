@@ -2,7 +2,6 @@
 """The figure of a sweep: scales, crosses, rows of panels."""
 
 import numpy as np
-import pytest
 from builders import scene_text
 
 from verification.figures.sweep import summary
@@ -41,26 +40,3 @@ def test_a_grid_of_two_numbers_is_a_map(tmp_path):
     (cross,) = panel.lines
     assert np.allclose(cross.get_xydata(), [0.4, 1000.0])
     figure.draw_without_rendering()
-
-
-def test_the_figure_marks_what_failed_and_has_the_scales_of_the_study(tmp_path):
-    """Of a made result of which the last point has none; strain has panels if there is any."""
-    (tmp_path / "sphere.toml").write_text(scene_text())
-    (tmp_path / "study.toml").write_text(STUDY)
-    content, rows = read_study(tmp_path / "study.toml"), []
-    for point in content.points:
-        values = dict(zip(content.study.vary, point.shown, strict=True))
-        numbers = {"p_max_Pa": 1e9, "contact_radius_m": 1e-6, "approach_m": 1e-7, "peeq_max": 0.0}
-        rows.append({"index": point.index, **values, "status": "converged", **numbers})
-    rows[-1] |= {"status": "failed", **dict.fromkeys(numbers)}
-    figure = summary(content.study, rows).figure
-    panels = np.array(figure.axes).reshape(3, 3)
-    assert [panel.get_xscale() for panel in panels[-1]] == ["linear", "log", "linear"]
-    assert panels[-1, 1].get_xlabel() == "radius of the counter-body [\u00b5m]"
-    crosses = [line for line in panels[0, 1].lines if line.get_marker() == "x" and line.get_xdata().size]
-    assert len(crosses) == 1 and crosses[0].get_xdata() == pytest.approx([1000.0])
-    points = [line for line in panels[0, 1].lines if line.get_marker() == "o"]
-    assert sum(line.get_xdata().size for line in points) == len(content.points) - 1
-    figure.draw_without_rendering()
-    rows[0]["peeq_max"] = 0.01
-    assert len(summary(content.study, rows).figure.axes) == 12
