@@ -84,6 +84,20 @@ def test_strain_far_away():
     np.testing.assert_allclose(deeper, -(down[0] - 2 * down[1] + down[2]) / step**2, rtol=1e-6, atol=1e-6)
 
 
+def test_two_cylinders():
+    """NAFEMS R0094-1: steel cylinder on aluminium, half-width 6.2146 mm, largest pressure 3585.4 MPa."""
+    scene = Scene(
+        body={"young": 70e9, "poisson": 0.3},
+        counterbody={"shape": "cylinder", "radius": 0.05, "length": 1e-3, **STEEL},
+        loading={"force": 35e3},
+        fem={"box": 20, "cells_per_radius": 10},
+    )
+    result = solve(scene)
+    found = [result.quantities[name] for name in ("contact_half_width_m", "p_max_Pa", "contact_area_m2")]
+    assert found == pytest.approx([6.2146e-3, 3585.4e6, 2 * 6.2146e-6], rel=1e-3)
+    assert result.status == "converged" and max(result.certificate.values()) < 1e-9
+
+
 PERFECT = {"law": "perfect", "yield_stress": YIELD}
 KINEMATIC = PERFECT | {"kinematic": {"modulus": [20e9], "recovery": [0.0]}}
 

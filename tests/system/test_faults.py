@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -28,9 +27,6 @@ from verification.runs.files import FolderError, write_atomically
 from verification.runs.lock import locked
 
 PROC = Path("/proc/self").exists()
-needs_proc = pytest.mark.skipif(
-    not PROC, reason="child processes are found in /proc, which this machine has not"
-)
 
 
 def gates_of(findings) -> set[str]:
@@ -173,40 +169,6 @@ def test_a_sweep_that_solves_finished_points_again_is_found(tmp_path, monkeypatc
     how = {"whom": "parent", "rng": random.Random(1)}
     _, found = killed_sweep(["sweep"], tmp_path / "s", table.encode(), 1.0, **how)
     assert [gate for gate, _ in found] == ["lost-points"] * 2
-
-
-CHILD = """import subprocess
-if (folder / 'ready').exists(): sys.exit(END)
-write('sweep.csv', 'index,status\\n'); write('sweep.json', '{"counts": {"reused": 0}}')
-child = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(60)', 'spawn_main'])
-write('ready', ''); child.wait(); sys.exit(END)
-"""
-
-
-@needs_proc
-@pytest.mark.parametrize(
-    ("whom", "end", "table", "gates"),
-    [
-        ("worker", 0, b"index,status\n", set()),
-        ("worker", 3, b"index,status\n", {"wrong-endings"}),
-        ("worker", 0, b"another\n", {"changed-tables"}),
-        ("parent", 0, b"index,status\n", {"wrong-endings"}),
-    ],
-)
-def test_a_sweep_that_ends_wrongly_after_a_kill_is_found(tmp_path, monkeypatch, whom, end, table, gates):
-    """One that fails, with another table, or that leaves its worker behind."""
-
-    def until_ready(pause):
-        while not (tmp_path / "s" / "ready").exists():
-            time.sleep(0.01)
-        time.sleep(pause)
-
-    monkeypatch.setattr(kills, "time", SimpleNamespace(sleep=until_ready, monotonic=time.monotonic))
-    monkeypatch.setattr(kills, "ORPHANS_S", 0.1)
-    fake(monkeypatch, CHILD.replace("END", str(end)))
-    how, found = killed_sweep(["sweep"], tmp_path / "s", table, 0.0, whom=whom, rng=random.Random(1))
-    killed = "a worker" if whom == "worker" else "the sweep"
-    assert gates_of(found) == gates and how.startswith(f"{killed}, and it finished")
 
 
 @pytest.mark.parametrize(
