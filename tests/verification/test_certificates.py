@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Certificates of results see perturbed answers; how iterations end."""
+"""Certificates of results, of worn ones too, see perturbed answers; how iterations end."""
 
 from dataclasses import replace
 from functools import cache
@@ -15,9 +15,10 @@ import fem_reference.spatial
 from fem_reference.common.contact import ended
 from sam import choose_grid
 from sam.contact.normal import Search, solve_contact
+from sam.scene import load_scene
 from sam.scene.result import stagnates, unfinished
-from verification.cases.case import Context, with_loading
-from verification.cases.certificates import certificates as case
+from verification.cases.case import Context, with_keys, with_loading
+from verification.cases.certificates import certificates as case, worn_certificates as study
 from verification.cases.recipes import Resolution
 from verification.checks import (
     axisymmetric as fem_checks,
@@ -30,7 +31,7 @@ from verification.checks import (
 from verification.checks.certificates import solved
 from verification.checks.material import around, back_stress, flow_of
 from verification.rows import load_rows
-from verification.runs.models import FEM_3D
+from verification.runs.models import FEM_3D, SAM
 
 LIMITS = {row.id.partition(".")[2]: row.tolerance for row in load_rows() if row.case == "certificates"}
 SPHERES, FILMS = ("elastic", "Swift"), ("soft film", "film, sliding")
@@ -428,3 +429,28 @@ class TestEndings:
         assert not flat.converged and "stagnated" in flat.ending and flat.iterations < 1000
         fine = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5)
         assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
+
+
+# a worn body
+
+
+LOOSE = 1e-4
+
+
+@pytest.fixture(scope="module")
+def worn():
+    """Scene, result and records of two cycles, less exactly than the case solves them."""
+    base = load_scene("verification/scenes/running-in-bulk.toml")
+    scene = with_keys(study.scene_of(base, 2), "solver", tolerance=LOOSE)
+    return scene, *solved(scene, SAM)
+
+
+def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
+    scene, result, records = worn
+    before, loaded, _end = study.last_cycle(records)
+    assert len(loaded) == scene.loading.steps and before.tree()["wear"]["depth"].any()
+    less = with_field(result, "cell_data", "worn_m", lambda depth: 0.99 * depth)
+    assert cell_checks.displaced(scene, study.lowered(less), loaded) > 1e-3
+    assert film_checks.states(scene, loaded) > 1e-3  # strains since the first load
+    through = contact_checks.flow(scene, records, choose_grid(scene).depths)  # also over the removal
+    assert through["flow"] > 1e-2

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The pages: whether they can be read, and whether their answers are those of the results."""
+"""The pages, README and the guide can be read, and their numbers are those of the results;
+nothing that is published names the machine that wrote it.
+"""
 
+import copy
 import json
 import re
 from fnmatch import fnmatch
@@ -8,6 +11,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from made_histories import as_the_paper_says
+from made_studies import verdicts
 from page_checks import PageReader, broken_links, faults_of
 
 from verification.cases import all_cases
@@ -22,6 +27,7 @@ from verification.suite.pages.answers import (
 from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.site import works
 from verification.suite.pages.stored import GROUPS, PAGES, group_of, read_stored
+from verification.suite.readme import renewed
 
 ROOT = Path(__file__).resolve().parents[2]
 REPORTS = ROOT / "reports"
@@ -118,3 +124,68 @@ def test_the_published_index_answers_every_question(evidence):
         for kind, *part in question.get("parts", ()):
             if kind == "cell" and part[1] in evidence.stored.ran:
                 assert len(list(cell(evidence, *part))) == 1, part
+
+
+# nothing names the machine that wrote it
+
+
+TEXTS = {".html", ".json", ".csv", ".xml", ".svg", ".md", ".toml", ".vtu"}
+EMBEDDED = re.compile(r"base64,[A-Za-z0-9+/=\s]+")
+OF_A_MACHINE = re.compile(
+    r"(?<![\w.:/<])/(?:tmp|home|root|work|usr|opt|var|mnt|srv|data|Users|private)/[\w.+-]+|\b[A-Za-z]:\\[\w.+-]+"
+)
+
+
+def places_in(folder: Path) -> list[str]:
+    """The absolute paths in the text files of a folder, each as `file: text`."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix in TEXTS:
+            text = EMBEDDED.sub("", path.read_text(encoding="utf-8"))
+            found += [f"{path.relative_to(folder)}: {hit}" for hit in OF_A_MACHINE.findall(text)]
+    return found
+
+
+def test_nothing_published_names_a_machine():
+    assert places_in(REPORTS) == []
+
+
+# README and guide
+
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def changed(results, **gates):
+    new = copy.deepcopy(results)
+    for gate in new["gates"]:
+        gate.update(gates.get(gate["id"].replace(".", "_").replace("-", "_"), {}))
+    return new
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/guide/which-model.md"])
+def test_the_numbers_are_those_of_the_published_pages(results, page):
+    """Of a report of an older version all but the answer about running-in: its cases have no data."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    texts = [renewed(text, results), text]
+    if not any("data" in case for case in results["cases"]):
+        texts = [
+            re.sub(r"\n- \[Does the model of running-in.*?(?=\n<!--)", "", t, flags=re.DOTALL) for t in texts
+        ]
+    assert texts[0] == texts[1]
+
+
+def test_failed_gates_are_named_and_counted(results):
+    none = copy.deepcopy(results)
+    for gate in none["gates"]:
+        gate["status"] = "passed" if gate["status"] == "failed" else gate["status"]
+    for case in none["cases"]:
+        case["status"] = "passed" if case["status"] == "failed" else case["status"]
+    assert "Every gate of the published pages holds." in renewed(README, none)
+    running_in = next(case for case in none["cases"] if case["name"] == "running-in")
+    running_in["data"] = {"statements": {"printed inputs": verdicts([as_the_paper_says()])}}
+    one = renewed(README, changed(none, pavement_fox={"status": "failed", "error": 2.0, "tolerance": 1.0}))
+    assert "One gate fails on the published pages: `pavement.fox` (2 against \u2264 1)." in one
+    assert "Yes. With the inputs that the paper prints, 17 of its 17 statements" in " ".join(one.split())
+    next(case for case in none["cases"] if case["name"] == "pavement")["status"] = "failed"
+    assert "have a figure that cannot be read: `pavement`." in " ".join(renewed(README, none).split())
