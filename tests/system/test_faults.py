@@ -22,7 +22,7 @@ from verification.robustness.kills import (
     killed_solve,
     killed_sweep,
 )
-from verification.runs import files
+from verification.runs import files, lock
 from verification.runs.files import FolderError, write_atomically
 from verification.runs.lock import locked
 
@@ -92,6 +92,15 @@ def test_a_locked_folder_is_made_and_goes_again_if_it_stays_empty(tmp_path):
     with locked(tmp_path / "empty"):
         pass
     assert (tmp_path / "a" / "b" / "file").exists() and (tmp_path / "empty").is_dir()
+
+
+def test_without_locks_of_the_system_there_is_none(tmp_path, monkeypatch):
+    def none(*_, **_by_name):
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
+
+    monkeypatch.setattr(lock, "lock_descriptor", none)
+    with locked(tmp_path), locked(tmp_path):
+        pass
 
 
 @pytest.mark.parametrize(

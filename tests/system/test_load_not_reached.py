@@ -18,9 +18,10 @@ from fem_reference.axisymmetric.model import Model
 from fem_reference.common import loading
 from sam.plasticity import history, load_step as plastic_step
 from sam.scene import Status
-from sam.scene.result import LAST
+from sam.scene.result import LAST, PEAK
 from samfem.cli import main
 from verification.figures import space
+from verification.runs.files import of_last_load, read_run
 
 
 def plastic(ratio, law=SWIFT, cells=33, *, grid=None, **loading):
@@ -138,3 +139,11 @@ def test_solve_says_at_which_load_its_numbers_are(solved):
     assert lines[0].startswith("plastic-zone-at-grid-edge in ")
     assert lines[1] == f"the peak load was not reached; at the last load that fitted, {force:.6g} N:"
     assert "plastic-zone-at-grid-edge" in error and (out / "figures" / "mises.png").exists()
+
+
+def test_its_figures_are_of_that_load(solved):
+    run = read_run(solved[0])
+    drawn = of_last_load(run)
+    assert drawn.quantities == run.last_fitting and set(drawn.tables["axis"]["state"]) == {PEAK}
+    assert np.array_equal(drawn.tables["axis"]["mises_Pa"], run.tables["axis"]["mises_Pa"])
+    assert set(run.tables["axis"]["state"]) == {LAST}

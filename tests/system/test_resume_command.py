@@ -13,7 +13,7 @@ import pytest
 from builders import scene_text
 
 from samfem.cli import main
-from verification.runs import checkpoints, models
+from verification.runs import checkpoints, files, models
 from verification.runs.archive import read_archive, write_archive
 from verification.runs.files import CHECKPOINT, FolderError, check_target
 from verification.runs.models import FEM, SAM
@@ -23,6 +23,7 @@ LOADS = "steps = 4\nunload = true\n[grid]\ncells = [17, 17]\n[fem]\ncells_per_ra
 ELASTIC = scene_text(("0.65 N", "0.171424 N"), add=LOADS)
 TEXT = ELASTIC.replace("[counterbody]", PLASTIC + "[counterbody]")
 OUT = Path("out")
+SUMMARY = OUT / "summary.json"
 
 
 @pytest.fixture
@@ -115,6 +116,24 @@ def test_outside_the_main_thread_no_handler_is_set(folder):
     assert codes == [0]
 
 
+def test_killed_while_the_result_is_written(solve, monkeypatch):
+    """The checkpoint outlives everything but summary.json."""
+    original = files.write_atomically
+
+    def write(path, content):
+        if path.name == "summary.json":
+            raise KeyboardInterrupt
+        original(path, content)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(files, "write_atomically", write)
+        assert "--resume continues after the last step" in solve(code=130).err
+    assert (OUT / CHECKPOINT).exists() and not SUMMARY.exists()
+    before = csv_files(OUT)
+    solve("--resume")
+    assert csv_files(OUT) == before and not (OUT / CHECKPOINT).exists()
+
+
 REFUSED = (
     (lambda who: who.update(scene_sha256="0" * 64), "of another scene,"),
     (lambda who: who.update(model=FEM), "of another model,"),
@@ -169,6 +188,27 @@ def test_resume_of_a_finished_folder_solves_nothing_and_keeps_its_exit_code(fold
         assert {path: path.stat().st_mtime_ns for path in OUT.iterdir()} == before
     (folder / "small.toml").write_text(TEXT.replace("steps = 4", "steps = 3"))  # not finished
     assert "no checkpoint in out: solved from the beginning" in solve("--resume").err
+
+
+def test_an_older_result_stays_until_a_newer_solve_is_finished(solve, interrupt):
+    """Interrupted while it solves the scene of a finished folder again: the result is there, and
+    --resume finishes.
+    """
+    solve()
+    summary = SUMMARY.read_bytes()
+    interrupt(2)
+    assert SUMMARY.read_bytes() == summary
+    assert "continued from step 3 of 5" in solve("--resume").err
+
+
+def test_a_checkpoint_left_beside_its_result_does_not_count(solve, interrupt):
+    """Killed after summary.json and before the checkpoint is removed, or while that was written."""
+    _, path = interrupt(2)
+    content = path.read_bytes()
+    solve("--resume")
+    for left in (content, content[:100]):
+        path.write_bytes(left)
+        assert "already finished" in solve("--resume").err
 
 
 def test_without_resume_a_checkpoint_is_said_and_replaced(solve, interrupt):

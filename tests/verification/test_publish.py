@@ -129,3 +129,21 @@ def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsy
     published.problem = ""
     run(tmp_path)
     assert published.runs == ["first", "second", "timed", "second"]
+
+
+def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, published, capsys):
+    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish(["frist"], out=tmp_path / "out", **where) == 2
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    assert publishing.publish([], out=tmp_path / "mine", **where) == 2
+    assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
+    assert published.runs == []
+
+
+def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
+    before = run(tmp_path)
+    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish([], level="quick", **where) == 2
+    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
+    assert run(tmp_path) == before

@@ -96,6 +96,14 @@ def test_pictures_show_what_the_tables_hold(model):
 DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
 
 
+def test_without_a_library_nothing_is_started_and_the_packages_are_named(monkeypatch):
+    monkeypatch.delenv(offscreen.WINDOW, raising=False)
+    monkeypatch.setattr(offscreen, "WINDOWS", {"libNoSuchLibrary.so.1": "vtkEGLRenderWindow"})
+    monkeypatch.setattr(subprocess, "run", pytest.fail)
+    with pytest.raises(CannotDrawError, match=re.escape(offscreen.INSTALL)):
+        draw(found("elastic").run.folder)
+
+
 @pytest.mark.parametrize(
     ("program", "longest", "how", "what_to_do"),
     [
@@ -129,6 +137,13 @@ class TestCommand:
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
 
+    @pytest.mark.usefixtures("cannot")
+    def test_view_says_that_it_cannot_and_writes_nothing(self, tmp_path, monkeypatch, samfem):
+        monkeypatch.chdir(tmp_path)
+        shown = samfem("view", str(found("elastic").run.folder), "--out", "a.png", code=1)
+        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
+        assert list(tmp_path.iterdir()) == []
+
     @pytest.mark.parametrize(
         ("words", "said"),
         [
@@ -136,6 +151,7 @@ class TestCommand:
             (["RUN", "--out", "a.jpg"], "a.jpg does not end in .png"),
             (["RUN", "--html", "a.png"], "a.png does not end in .html"),
             (["RUN", "--out", "none/a.png"], "none/a.png cannot be written"),
+            (["RUN", "--picture", "worn", "--out", "a.png"], "does not have what --picture worn shows"),
             (["RUN", "--picture", "wron"], "invalid choice: 'wron'"),
             (["RUN", "--out", "a.png", "--html", "a.html"], "not allowed with argument"),
         ],

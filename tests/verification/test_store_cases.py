@@ -67,6 +67,18 @@ def test_store_lists_and_prunes(folder, counted, samfem, monkeypatch):
     assert list((folder / "store").iterdir()) == []
 
 
+def test_store_refuses_what_could_be_misread(refused):
+    for words in (["--older-than", "3"], ["--prune", "all", "--older-than", "3"], ["--prune", "x"]):
+        assert "--" in refused("store", *words)
+    for days in ("-1", "nan", "inf", "many"):
+        assert "--older-than" in refused("store", "--prune", "--older-than", days)
+
+
+def test_store_says_when_there_is_none(monkeypatch, samfem):
+    monkeypatch.setenv(FOLDER, "")
+    assert "no store" in samfem("store", "--prune").out
+
+
 # whole cases
 
 

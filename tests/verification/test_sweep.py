@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from contextlib import nullcontext
 from pathlib import Path
 from types import ModuleType
-from unittest.mock import patch
+from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
@@ -146,6 +146,19 @@ def test_wrong_input_is_refused_and_nothing_is_created(
     assert fragment in refused("sweep", "study.toml", *options)
 
 
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (ImportError("no such symbol"), "(no such symbol): use --workers"),
+        (ModuleNotFoundError(), "pip install"),
+    ],
+)
+def test_a_package_that_cannot_be_loaded_is_said(folder, refused, monkeypatch, error, words):
+    monkeypatch.setattr(sweeping, "Cluster", Mock(side_effect=error))
+    said = refused("sweep", "study.toml", "--scheduler", "tcp://localhost:8786")
+    assert "needs the package distributed" in said and words in said
+
+
 def test_a_folder_with_a_single_run_is_not_overwritten(folder, samfem):
     samfem("solve", "coarse.toml", "--out", "run")
     assert "run holds a single run" in samfem("sweep", "study.toml", "--out", "run", code=2).err
@@ -196,6 +209,27 @@ def test_a_design_ends_with_the_indices_of_what_moves_a_contact(folder, no_figur
         assert own == pytest.approx(dict(zip(study.factors, index.values, strict=True)), rel=1e-12)
         assert own["counterbody.radius"] == 0.0
     assert Path("out/sensitivity.png").stat().st_size > 1000
+
+
+@pytest.mark.usefixtures("same_worker")
+def test_what_did_not_converge_is_not_solved_again(folder, no_figure, monkeypatch):
+    monkeypatch.setenv(FOLDER, str(folder / "store"))
+    (folder / "coarse.toml").write_text(scene_text(add=COARSE + 'extent = ["4 um", "4 um"]\n'))
+    first = sweep_of("out", code=1)
+    rows = Path("out/sweep.csv").read_bytes()
+    monkeypatch.setattr(Processes, "submit", lambda *_: pytest.fail("solved"))
+    again = sweep_of("out", code=1)
+    assert (first["counts"]["not_converged"], again["counts"]["reused"]) == (4, 4)
+    assert Path("out/sweep.csv").read_bytes() == rows
+
+
+@pytest.mark.usefixtures("same_worker")
+def test_runs_of_an_older_study_are_removed(folder, no_figure):
+    sweep_of("out")
+    (folder / "study.toml").write_text(STUDY.replace("0.1 N", "0.3 N").replace("count = 4", "count = 2"))
+    sweep_of("out")
+    assert [path.name for path in sorted(Path("out/runs").iterdir())] == ["0", "1"]
+    assert read_run(Path("out/runs/0")).scene.loading.force == 0.3 and len(table("out")) == 2
 
 
 def test_an_interrupted_sweep_keeps_what_is_finished_and_goes_on_from_there(

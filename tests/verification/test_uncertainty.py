@@ -10,6 +10,7 @@ from builders import PERFECT, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
+from verification.cases.cost import uncertainty as study
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -295,6 +296,14 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
     assert values and {name: found[name]["values"][-1] for name in values} == values
 
 
+def test_what_a_doubtful_reference_says_does_not_count():
+    """In the case of the uncertainties: a reference known to less than a third of one counts, another does not."""
+    entry = {"values": [1.0, 1.2, 1.5], "cells": [4, 3, 2], "u_num": 0.3, "u_steps": 0.0, "u_box": 0.0}
+    known, unknown = (study.judged(entry, 1.0, doubt=0.3 / each) for each in (3.1, 2.9))
+    assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
+    assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
+
+
 # the command
 
 
@@ -319,6 +328,13 @@ def test_the_command_prints_and_writes_it(sphere, samfem):
     again = read_run(sphere / "plain")
     assert again.quantities == plain and again.uncertainty is None and "quantities" not in again.tables
     assert not (sphere / "sphere-sam" / "members").exists()
+
+
+def test_no_uncertainty_at_all_is_an_error_that_says_what_to_change(sphere, samfem):
+    (sphere / "sphere.toml").write_text(TEXT.replace("37, 37", "33, 33"))
+    said = samfem("solve", "sphere.toml", "--uncertainty", code=1)
+    assert "sam: no uncertainty of any quantity: the coarsest grid is under-resolved: 15 cells" in said.err
+    assert said.err.endswith("raise grid.cells to [37, 37]\n") and "+-" not in said.out
 
 
 def test_resume_begins_with_the_first_solve_that_is_not_finished(sphere, samfem, monkeypatch):
