@@ -13,6 +13,7 @@ from made_results import context
 from sam.scene import SceneError
 from verification.cases import case_of
 from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT
+from verification.cases.plastic.plastic_convergence import growth_of_norms, limit_of_both
 from verification.cases.recipes import RECIPES, beside
 from verification.cases.sweep import STATISTICS, evaluated, words_of
 from verification.figures.check import findings
@@ -109,6 +110,22 @@ def test_what_is_shown_follows_from_the_words(made, tmp_path):
     both = pd.concat([found[""].frame, found[""].frame.assign(model="fem")])
     figure = context("made", tmp_path).save(SWEPT["limits"](case.file, both, "radius"))
     assert (tmp_path / figure.png).stat().st_size > 1000
+
+
+def test_limit_of_both_and_growth_of_norms():
+    """Steps and cells act in products: v = 2 (1 + h_steps)(1 + h_cells^2)."""
+    steps, cells = np.array([5, 10, 20]), np.array([0.1, 0.05, 0.025])
+    rows = pd.DataFrame(
+        {
+            "sweep": ["steps"] * 3 + ["grid"] * 3,
+            "loading.steps": [*steps, 10, 10, 10],
+            "h": [*1.0 / steps, *cells],
+            "peeq-max": [*2.0 * (1 + 1 / steps) * 1.01, *2.0 * 1.1 * (1 + cells**2)],
+        }
+    )
+    assert limit_of_both(rows, "peeq-max") == pytest.approx(2.0, rel=1e-6)
+    apart = pd.DataFrame({"peeq-axis": [0.04, 0.02, 0.01], "peeq-plane": [0.08, 0.03, 0.015]})
+    assert growth_of_norms(apart, "") == pytest.approx(0.5, rel=1e-12)
 
 
 @pytest.mark.parametrize("file", [f for f in case_files().values() if f.taken], ids=lambda file: file.name)

@@ -5,14 +5,16 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import verification
 from sam.scene import read_scene
 from verification.cases.case import with_loading
-from verification.cases.periodic import lateral
+from verification.cases.periodic import area_over_load, lateral, periodic_peers
 from verification.cases.recipes import load_ratio
 from verification.cases.sweep import Measured
+from verification.peers.running import SAM, TAMAAS
 from verification.references import double_wave, wave
 
 SCENE, _ = read_scene(Path(verification.__file__).with_name("scenes") / "wavy-periodic.toml")
@@ -52,3 +54,17 @@ def test_loads_of_waves_are_those_of_their_exact_contact():
     assert found.values["share"] == 1.0 and found.values["area"] == pytest.approx(4e-10)
     largest = found.units["p0"] * (1.1 + np.cos(np.pi / 32) ** 2)
     assert found.values["p-max"] == pytest.approx(largest, rel=1e-12)
+
+
+def test_rows_take_where_the_area_departs_and_times_within_the_error():
+    rows = pd.DataFrame({"index": [1.0, 2.0, 4.0], "over": [1.0, 1.0, 1.1], "kappa": [2.0, 2.2, 2.4]})
+    assert area_over_load.departs(rows, "over") == pytest.approx(2 * 2**0.5)
+    assert area_over_load.bar(rows, "kappa") == pytest.approx(0.2 / 3**0.5)
+    times = pd.DataFrame(
+        {
+            "model": [SAM, SAM, TAMAAS, TAMAAS],
+            "seconds": [1.0, 2.0, 8.0, 30.0],
+            "error": [1e-3, 1e-5, 1e-3, 1e-6],
+        }
+    )
+    assert periodic_peers.tamaas_over_sam(times, "seconds") == 15.0

@@ -14,7 +14,7 @@ from sam.scene import load_scene
 from verification.cases import all_cases
 from verification.cases.case import Context
 from verification.cases.cost import work_precision as case, work_precision_problems as problems
-from verification.cases.cost.work_precision_problems import AXISYMMETRIC, COUPLED
+from verification.cases.cost.work_precision_problems import AXISYMMETRIC, COUPLED, SPATIAL, TWICE
 from verification.cost.advice import read_rows
 from verification.cost.precision import Ladder, Reached, agreed, at_error, bracket, limit_of
 from verification.figures.style import save
@@ -101,6 +101,25 @@ def test_every_problem_has_its_methods_its_five_resolutions_and_a_scene_each_mod
         assert (problem.exact is None) == bool(problem.references)
         assert all(len(method(problem, name).ladder) >= problem.tops for name in problem.references)
         assert f"errors {problem.name}" in FILE.figures
+
+
+def test_ratios_are_of_the_times_to_an_error_that_both_reach():
+    """Errors f/n at s n^2 seconds: (f/e)^2 s to an error e. The axisymmetric model ends at 1/32 and counts
+    with its finest point, that in space at 0.5/32; nothing is compared below three times the floor.
+    """
+    of = {COUPLED: (0.3, 1e-3), AXISYMMETRIC: (1.0, 2e-3), SPATIAL: (0.5, 0.5)}
+    rows = pd.DataFrame(
+        {"method": name, "error": f / n, "cpu_s": s * n**2, "floor": 0.0}
+        for name, (f, s) in of.items()
+        for n in (4, 8, 16, 32)
+    )
+    assert case.ratio_at_one(rows, "") == pytest.approx(30**2 * 1e-3 / (2e-3 * 32**2), rel=1e-12)
+    assert case.ratio_at_a_third(rows, "") == math.inf  # 0.3/32 is 0.9 %
+    ratio, error = case.faster(rows, SPATIAL)
+    assert error == 0.5 / 32 and case.faster_than_spatial(rows, "") == ratio
+    assert ratio == pytest.approx(0.5 * 32**2 / (1e-3 * 19.2**2), rel=1e-12)
+    assert math.isnan(case.faster(rows, TWICE)[0])
+    assert case.faster(rows.assign(floor=0.05), SPATIAL)[1] == pytest.approx(0.15, rel=1e-12)
 
 
 def test_a_solve_that_breaks_off_or_does_not_converge_is_shown_and_counts_as_no_answer():

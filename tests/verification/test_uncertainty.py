@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
 
@@ -297,11 +298,22 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
 
 
 def test_what_a_doubtful_reference_says_does_not_count():
-    """In the case of the uncertainties: a reference known to less than a third of one counts, another does not."""
+    """In the case of the uncertainties: one that is known to less than a third of an uncertainty counts."""
     entry = {"values": [1.0, 1.2, 1.5], "cells": [4, 3, 2], "u_num": 0.3, "u_steps": 0.0, "u_box": 0.0}
     known, unknown = (study.judged(entry, 1.0, doubt=0.3 / each) for each in (3.1, 2.9))
     assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
     assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
+
+
+def test_medians_are_of_quantities_with_three_values():
+    of = {
+        "peeq_max": (2.0, 3.0, 9.0),
+        "p_max_Pa": (4.0, 5.0, 6.0),
+        "few": (1.0, 1.0),
+        study.AREA: (7.0, 8.0, 9.0),
+    }
+    rows = pd.DataFrame([{"quantity": name, "x": each} for name, own in of.items() for each in own])
+    assert study.smallest_median(rows, "x") == 3.0 and study.largest_median(rows, "x") == 5.0
 
 
 # the command
