@@ -47,6 +47,7 @@ TABOR, STRAIN = (2.8, 3.0), 0.08  # hardness over yield stress at STRAIN: Tabor,
 STEEL = "6.8 to 8.2 GPa of AISI 52100 hardened through (60 to 65 HRC, 697 to 832 HV by ASTM E140)"
 DISCS = "5 to 60 nm of polished to ground discs"
 BEST = 3  # points that are shown
+AGAIN = 4  # points that are solved again beside a campaign, and at the quick level all
 MATERIALS = (BULK, A, B)
 
 
@@ -264,16 +265,16 @@ class RunningInSensitivity(Readings):
             for k, shares in enumerate(design(UNIFORM, len(INPUTS), points, SEED))
         }
 
+    def solved_again(self, reading: Any, material: str, surface: int) -> bool:
+        return reading < AGAIN
+
     def solve(self, context: Context) -> Studied:
         points, _ = EFFORTS[context.level]
         return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED))
 
     def measure(self, found: Studied) -> dict[str, Measured]:
         every = len(found.shares) * len(found.effort.cases)
-        return {
-            "missing": Measured(every - len(found.frame), 0),
-            "lost": Measured(1.0 - float(found.frame["converged"].mean())),
-        }
+        return {"missing": Measured(every - len(found.frame), 0)} | super().measure(found.frame)
 
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
         points, effort = len(found.shares), found.effort
@@ -302,6 +303,7 @@ class RunningInSensitivity(Readings):
         yield study.runs_table("Over all points", {NAMES[case]: runs for case, runs in groups})
 
     def notes(self, found: Studied) -> Iterator[str]:
+        yield from self.told_of_campaign(found.frame)
         if found.judged:
             yield fitted_note(found)
 

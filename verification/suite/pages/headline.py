@@ -14,7 +14,7 @@ from verification.suite.pages.stored import ShownCase, Stored
 
 PAGE = "running-in"
 READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-physics"
-FINER, WORDS = "running-in-cells", "running-in-readings"
+WORDS = "running-in-readings"
 STUDIES = {
     READINGS: "The comparison of both readings",
     INPUTS: "The study over the inputs",
@@ -84,7 +84,9 @@ def headline_of(stored: Stored) -> Headline | None:
         )
         return Headline(words, studies)
     data = {each.name: each.case.get("data", {}) for each in stored.ran.values()}
-    read, finer = (_together(data.get(name, {}).get("statements", {})) for name in (READINGS, FINER))
+    read, finer = (
+        _together(data.get(name, {}).get(of, {})) for name, of in ((READINGS, "statements"), (WORDS, "finer"))
+    )
     drawn, tried = (
         {each["statement"]: each for each in data.get(name, {}).get("statements", ())}
         for name in (INPUTS, PHYSICS)
@@ -179,7 +181,7 @@ def _of_readings(read: Verdicts, finer: Verdicts, second: str) -> Iterator[str]:
     if coarse:
         yield (
             f"With the printed inputs {len(coarse)} of these {first} ({'; '.join(coarse)}) failed on finer "
-            "cells where those were tried, on one surface; not counting such, "
+            "cells where those were tried, on three surfaces of a quarter of the area; not counting such, "
             f"{first - len(coarse)} of {len(own)} hold."
         )
 
