@@ -370,7 +370,7 @@ class TestFem:
             {"cells": cells, "mode": mode, "cycle": cycle, "wears": 4e-9} | dict.fromkeys(measures, value)
             for cells, value in zip(fem.CELLS, (0.06, 0.05, 0.04), strict=True)
             for mode in ("own", "given")
-            for cycle in (1, 3)
+            for cycle in (1, fem.CYCLES)
         ]
         assert fem.shrinking(pd.DataFrame(rows[::4]), "strain") == pytest.approx(5 / 6, rel=1e-12)
         assert wrong(self.NAME, rows) == set()
@@ -394,17 +394,21 @@ class TestFem:
                 tables=tables(cells), grids={s: heights(cells, k) for k, s in enumerate(states, start=1)}
             )
 
-        def worn_cycles(scene, depths):
-            asked.append(depths)
-            cells = fem.CELLS[(len(asked) - 1) // 2]
-            worn = [heights(cells, k)["surface"].cell_data["worn_m"][..., 0] for k in (1, 2, 3)]
-            return [WornCycle(tables(cells, 2.0, 1.1), 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]
+        def worn_cycles(scene, *ways):
+            asked.extend(ways)
+            cells = fem.CELLS[len(asked) // 2 - 1]
+            worn = [heights(cells, k + 1)["surface"].cell_data["worn_m"][..., 0] for k in range(fem.CYCLES)]
+            return [
+                [WornCycle(tables(cells, 2.0, 1.1), 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]
+            ] * len(ways)
 
         here = context(self.NAME, tmp_path)
         monkeypatch.setattr(here, "solve", solve)
         monkeypatch.setattr(fem, "worn_cycles", worn_cycles)
         rows = list(fem.compared(here))
-        assert asked[0] is None and np.sum(asked[1], axis=0).max() == pytest.approx(3 * fem.THICK, rel=1e-12)
+        assert asked[0] is None and np.sum(asked[1], axis=0).max() == pytest.approx(
+            fem.CYCLES * fem.THICK, rel=1e-12
+        )
         assert len(rows) == 12 and rows[-1]["wears"] == pytest.approx(fem.THICK)
         assert rows[-1]["pressure"] == pytest.approx(3.0 / np.sqrt(16 + 36 + 4))
         assert rows[-1]["residual"] < 1e-12

@@ -39,7 +39,9 @@ def solve_forked(scene: Scene, model: str) -> Result:
     `solve_alone`, for times only, as its memory is not its own.
     """
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([name for each in sorted(set(models.MODELS.values())) for name in parts(each)])
+    context.set_forkserver_preload(
+        [name for each in sorted(set(models.MODELS.values())) for name in parts(each)]
+    )
     with computing_with(1), ProcessPoolExecutor(1, mp_context=context) as executor:
         return executor.submit(models.solve, scene, model).result()
 
@@ -57,7 +59,7 @@ def alone(function, *arguments, threads: int = 1):
 
 
 def parts(place: str) -> list[str]:
-    """The modules of the package in which a model is, and the libraries that they import where they need them."""
+    """The modules of the package of a model, and the libraries that they import where they need them."""
     package = import_module(place.partition(".")[0])
     return [*(found.name for found in walk_packages(package.__path__, f"{package.__name__}.")), *LIBRARIES]
 
