@@ -213,7 +213,7 @@ class TestCampaign:
         one = next(iter(case.scenes(own)))[0]
         wanted = {key: each for key, each in case.scenes(own).items() if key[0] == one and key[2] < 3}
         monkeypatch.setattr(type(case), "scenes", lambda *_: wanted)
-        monkeypatch.setattr("verification.cases.running_in.study.resources.files", lambda _: tmp_path)
+        monkeypatch.setattr(study, "FOLDER", tmp_path)
 
         def solve(model, scene, label, *, demand):
             solved.append(label)
@@ -240,6 +240,27 @@ class TestCampaign:
         np.testing.assert_allclose(kept.volume, as_the_paper_says()[A].volume, rtol=1e-5)
         assert case.measure(after)["campaign"].value == pytest.approx(0.03, rel=1e-4)
         assert study.solved_of(after).index.tolist() == [list(wanted).index((one, A, 2))]
+
+    @pytest.mark.parametrize(("name", "again"), [("running-in-physics", 24), ("running-in-sensitivity", 10)])
+    def test_a_study_of_a_campaign_has_all_rows_tables_and_notes(self, name, again, tmp_path, monkeypatch):
+        case, solved = all_cases()[name], []
+        own = context(name, tmp_path, level="full")
+        monkeypatch.setattr(study, "FOLDER", tmp_path)
+
+        def solve(model, scene, label, *, demand):
+            solved.append(label)
+            own.sources[label] = Reuse(False, "2026-01-02T03:04", "abcdefgh")
+            return result_of(as_the_paper_says()[next(each for each in NAMES if f"{each}-seed" in label)])
+
+        monkeypatch.setattr(own, "solve", solve)
+        case.keep(own, tmp_path / f"{name}.csv.gz")
+        every = len(solved)
+        campaigns.cache_clear()
+        solved.clear()
+        found = case.solve(own)
+        assert len(solved) == again and red(name, case.measure(found), whole=True) == set()
+        assert readable(case, found)
+        assert f"{every - again} of {every} runs" in next(iter(case.notes(found)))
 
     def test_what_another_study_has_is_taken_from_there_and_not_kept_again(self, tmp_path, monkeypatch):
         """running-in solves what its own campaign is to have: the printed reading is that of the readings."""

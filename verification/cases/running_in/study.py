@@ -64,6 +64,10 @@ LARGEST, POINTS = 0.2, 60  # of the plastic strain in the table of a yield stres
 CUBIC, GIGA, NAN = 1e18, 1e-9, float("nan")
 
 
+FOLDER = resources.files(__package__)
+"""Where campaigns are."""
+
+
 @dataclass(frozen=True)
 class Effort:
     """How much is run: cycles, load steps each way, cells of 1 um a side, materials, seeds."""
@@ -289,7 +293,7 @@ class Kept(NamedTuple):
 def campaigns() -> Mapping[str, Kept]:
     """Digest of a scene -> its run, of all studies beside this module that take hours and were solved."""
     found = {}
-    for file in resources.files(__package__).iterdir():
+    for file in FOLDER.iterdir():
         case, _, ending = file.name.partition(".")
         if ending == "csv.gz":
             made, *lines = gzip.decompress(file.read_bytes()).decode().splitlines()
