@@ -150,6 +150,7 @@ def test_plan_is_short_and_in_numbers_the_same(capsys):
     assert json.loads(capsys.readouterr().out) == json.loads(json.dumps(found.content))
     assert main(["plan", str(file)]) == 0
     assert (short := capsys.readouterr().out.splitlines()) == str(found).splitlines()
+    assert len(short) == 5 + len(found.warnings)
     assert f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1] and max(map(len, short)) <= 112
     assert (found.error, found.contact["over_yield"]) == (0.003, pytest.approx(4.0, rel=1e-3))
 

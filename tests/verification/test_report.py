@@ -118,6 +118,13 @@ def test_what_is_unknown_is_exit_code_2_and_nothing_is_created(tmp_path, monkeyp
     assert said in capsys.readouterr().err and list(tmp_path.iterdir()) == []
 
 
+def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
+    (tmp_path / "holiday.png").write_bytes(b"x")
+    assert main(["verify", "good", "--out", str(tmp_path)]) == 2
+    assert "holds files that are no verification report" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.rglob("*")] == ["holiday.png"]
+
+
 def test_earlier_report_is_replaced(tmp_path):
     out = tmp_path / "out"
     run(out, "good")

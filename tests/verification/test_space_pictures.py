@@ -153,6 +153,13 @@ class TestCommand:
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
 
+    @pytest.mark.usefixtures("cannot")
+    def test_view_says_that_it_cannot_and_writes_nothing(self, tmp_path, monkeypatch, samfem):
+        monkeypatch.chdir(tmp_path)
+        shown = samfem("view", str(found("elastic").run.folder), "--out", "a.png", code=1)
+        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
+        assert list(tmp_path.iterdir()) == []
+
     @pytest.mark.parametrize(
         ("words", "said"),
         [
@@ -160,6 +167,7 @@ class TestCommand:
             (["RUN", "--out", "a.jpg"], "a.jpg does not end in .png"),
             (["RUN", "--html", "a.png"], "a.png does not end in .html"),
             (["RUN", "--out", "none/a.png"], "none/a.png cannot be written"),
+            (["RUN", "--picture", "worn", "--out", "a.png"], "does not have what --picture worn shows"),
             (["RUN", "--picture", "wron"], "invalid choice: 'wron'"),
             (["RUN", "--out", "a.png", "--html", "a.html"], "not allowed with argument"),
         ],

@@ -197,6 +197,7 @@ def test_all_errors_of_a_study_come_at_once(folder):
         ('"a" = { range = [1, 2], block = true }', MORRIS, "vary.a.block = true: with a list of values"),
         ('"a" = { list = [1, 2], block = true }', MORRIS, "a key that is no block"),
         ('"a" = { range = [1, 2] }', "mode = 'sobol'\nsamples = 5000\nseed = 1", "at most 3333 with 1 keys"),
+        ('"solver.uncertainty" = { list = [true] }', "", "solver.uncertainty = true: not in a sweep"),
         ('"a" = { range = [0, 1' + "0" * 400 + "], count = 3 }", "", "a = "),
     ],
 )

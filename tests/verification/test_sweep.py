@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
-from unittest.mock import patch
+from unittest.mock import Mock, patch
 
 import numpy as np
 import pytest
@@ -140,6 +140,19 @@ def test_wrong_input_is_refused_and_nothing_is_created(
     monkeypatch.setattr(executors, "CONNECT_S", 0.5)
     (folder / "study.toml").write_text(STUDY + change)
     assert fragment in refused("sweep", "study.toml", *options)
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (ImportError("no such symbol"), "(no such symbol): use --workers"),
+        (ModuleNotFoundError(), "pip install"),
+    ],
+)
+def test_a_package_that_cannot_be_loaded_is_said(folder, refused, monkeypatch, error, words):
+    monkeypatch.setattr(sweeping, "Cluster", Mock(side_effect=error))
+    said = refused("sweep", "study.toml", "--scheduler", "tcp://localhost:8786")
+    assert "needs the package distributed" in said and words in said
 
 
 def test_a_folder_with_a_single_run_is_not_overwritten(folder, samfem):

@@ -324,6 +324,13 @@ def test_the_command_prints_and_writes_it(sphere, samfem):
     assert not (sphere / "sphere-sam" / "members").exists()
 
 
+def test_no_uncertainty_at_all_is_an_error_that_says_what_to_change(sphere, samfem):
+    (sphere / "sphere.toml").write_text(TEXT.replace("37, 37", "33, 33"))
+    said = samfem("solve", "sphere.toml", "--uncertainty", code=1)
+    assert "sam: no uncertainty of any quantity: the coarsest grid is under-resolved: 15 cells" in said.err
+    assert said.err.endswith("raise grid.cells to [37, 37]\n") and "+-" not in said.out
+
+
 def test_resume_begins_with_the_first_solve_that_is_not_finished(sphere, samfem, monkeypatch):
     original, calls = models.solve, []
 

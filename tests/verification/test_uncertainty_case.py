@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The case uncertainty: what counts, and that another rule turns it red."""
+"""The case uncertainty: which errors count, and of which quantities medians are taken."""
 
 import pandas as pd
 

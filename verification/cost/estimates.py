@@ -195,7 +195,9 @@ def contact_share(scene: Scene, pressure: float) -> float:
 
 
 def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
-    """Cells in x and y of the box around a rough contact: where the gap is smallest, WIDER_SPOTS wider."""
+    """Cells in x and y of the box around a rough contact: the whole grid if the contact changes its place,
+    else around the cells with the smallest gap, WIDER_SPOTS times as many as are expected in contact.
+    """
     from sam.contact import Counters, around
     from sam.plasticity import or_whole
 
@@ -356,7 +358,7 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
-    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that."""
+    """(radius, depth) in Hertz radii of where the stress of Hertz exceeds the yield stress, p0/ratio."""
     from verification.reference.hertz import subsurface_stress
     from verification.reference.stress import von_mises
 
@@ -489,7 +491,7 @@ def _line(scene: Scene, plan: Any) -> Counted:
 
 
 def _held_states(scene: Scene, plan: Any) -> float:
-    """Bytes of the states held while a counter-body moves: ends of passes, and all of a judged period."""
+    """Bytes of the states kept while a counter-body moves: ends of passes, and all of a judged period."""
     if not (scene.moves and flows(scene)):
         return 0.0
     plasticity, judging = scene.body.plasticity, plan.judging
