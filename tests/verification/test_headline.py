@@ -95,7 +95,7 @@ def test_the_answer_counts_what_the_data_hold_and_the_index_and_the_page_say_it(
     assert "first on deviation of the layer, factor (" in found.depends
     assert "of 24 ways to harden and to load it, 15 hold together at best" in found.depends
     inputs, physics = studies
-    none = {**inputs, "data": inputs["data"] | {"best": []}}
+    none = {**inputs, "data": inputs["data"] | {"best": 0}}
     without = headline_of(read_stored(stored(readings, none, physics))).depends
     assert "At the best of the points" in found.depends and "At the best of the points" not in without
     write_report(results, tmp_path)

@@ -220,8 +220,8 @@ class TestReadings:
             assert {len(row) for row in table.rows} == {len(table.columns)}, table.caption
         data = CASE.data(found)
         assert [{each["by_median"] for each in of} for of in data["statements"].values()] == [{HELD}] * 2
-        bulk = running_in.regimes(found, RENEWED)["bulk"]
-        assert bulk["reached"] == 5e9 and bulk["removed_from"] == Limits.of(SCENES[BULK]).removal
+        row = next(row for row in running_in.regimes_table(found).rows if row[:2] == (RENEWED, "bulk"))
+        assert row[3] == f"{Limits.of(SCENES[BULK]).removal / 1e9:.2f}" and row[5] == "5.00"
 
     def test_runs_that_are_lost_are_named_counted_left_out_and_not_drawn(self, solved, monkeypatch):
         for drawing in ("curves", "six_panels", "yield_profiles"):

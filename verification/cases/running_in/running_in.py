@@ -19,6 +19,7 @@ from verification.cases.running_in.study import (
     GIGA,
     LAST,
     NAMES,
+    NAN,
     A,
     B,
     Effort,
@@ -209,30 +210,20 @@ def shown_of(found: DataFrame) -> Iterator[tuple[str, str, Run]]:
             yield reading, case, min(runs, key=lambda one: one.scene.surface.seed != SHOWN)
 
 
-def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
-    """Material -> in Pa strength, pressures at which films fail and metal goes, median peak of cycle 1."""
-    values = {}
-    for case, runs in runs_of(found, reading):
-        own = Limits.of(runs.iloc[0].scene)
-        first = [one.history.p_max[0] for one in runs if one.result.converged]
-        values[NAMES[case]] = {
-            "strength": own.strength,
-            "removed_from": own.removal,
-            "film_fails_from": own.film,
-            "reached": float(np.median(first)) if first else float("nan"),
-        }
-    return values
-
-
 def regimes_table(found: DataFrame) -> SmallTable:
-    """The pressures at which films fail and metal is removed, against the largest there is."""
+    """The pressures at which films fail and metal is removed, against the largest there is: the median of the
+    runs in the first cycle.
+    """
     rows = []
     for reading in WORDS:
-        for name, own in regimes(found, reading).items():
-            numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in own.values())
-            ends = own["reached"], own["film_fails_from"], own["removed_from"]
-            so = "no run converged" if np.isnan(own["reached"]) else str(regime(*ends))
-            rows.append((reading, name, *numbers, so))
+        for case, runs in runs_of(found, reading):
+            own = Limits.of(runs.iloc[0].scene)
+            first = [one.history.p_max[0] for one in runs if one.result.converged]
+            reached = float(np.median(first)) if first else NAN
+            values = own.strength, own.removal, own.film, reached
+            numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in values)
+            so = str(regime(reached, own.film, own.removal)) if first else "no run converged"
+            rows.append((reading, NAMES[case], *numbers, so))
     columns = (
         "reading|case|σ_y(limit) at the surface|removed from, μ high|film fails from|p_max, first cycle|so"
     )

@@ -50,12 +50,11 @@ COUNTERS = {
 """What presses on the body from cycle to cycle, in words -> in labels."""
 SIGNS = ("constant", "alternating")
 """Of friction from cycle to cycle."""
-PARTS = ("counter", "sign", "hardening")
 ALL = {
     f"{counter}; {sign} friction; {hardening}": (counter, sign, hardening)
     for counter, sign, hardening in product(COUNTERS, SIGNS, SHARES)
 }
-"""Physics as it is named -> its PARTS."""
+"""Physics as it is named -> its counter-body, sign of friction and hardening."""
 
 
 def under(scene: Scene, counter: str, sign: str, hardening: str) -> Scene:
@@ -120,15 +119,11 @@ class RunningInPhysics(Readings):
 
     def data(self, found: DataFrame) -> dict[str, Any]:
         said = {name: [one["by_agreement"] for one in each] for name, each in readings_of(found).items()}
-        physics = [
-            dict(zip(PARTS, ALL[name], strict=True)) | {"held": each.count(HELD)}
-            for name, each in said.items()
-        ]
         statements = [
             {"figure": each.figure, "statement": each.words, "verdicts": list(verdicts)}
             for each, verdicts in zip(STATEMENTS, zip(*said.values(), strict=True), strict=True)
         ]
-        return {"physics": physics, "statements": statements}
+        return {"held": [each.count(HELD) for each in said.values()], "statements": statements}
 
     def tables(self, found: DataFrame) -> Iterator[SmallTable]:
         yield from study.together(readings_of(found))

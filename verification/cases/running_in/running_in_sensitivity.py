@@ -291,8 +291,7 @@ class RunningInSensitivity(Readings):
         yield "Resolved", f"changes of {least:.0f} % and more between the halves of a range"
 
     def data(self, found: Studied) -> dict[str, Any]:
-        best = [{"point": k, "hold": int(found.counts[k]), "away": float(found.away[k])} for k in found.best]
-        resolved = least_change(len(found.shares))
+        resolved, best = least_change(len(found.shares)), int(found.counts.max())
         return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:

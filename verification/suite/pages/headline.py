@@ -103,7 +103,7 @@ def headline_of(stored: Stored) -> Headline | None:
     second = data.get(READINGS, {}).get("second_reading", "")
     depends = [*(_of_inputs(drawn, data[INPUTS]) if drawn else [missing(INPUTS)])]
     if tried:
-        counts = [each["held"] for each in data[PHYSICS]["physics"]]
+        counts = data[PHYSICS]["held"]
         depends.append(
             f"On one surface, which gives no probability, under each of {len(counts)} ways to harden and to "
             f"load it, {max(counts)} hold together at best; under the way of the paper {counts[0]}."
@@ -208,7 +208,7 @@ def _of_inputs(chances: Mapping[str, Mapping], data: Mapping) -> Iterator[str]:
         f"{f', first on {named}' * bool(named)}; of the others the study does not tell: it resolves "
         f"changes of {100 * data['resolved']:.0f} % and more between the halves of a range."
     )
-    if best := max((each["hold"] for each in data["best"]), default=0):
+    if best := data["best"]:
         yield (
             f"At the best of the points {best} hold together (fitted), which is no bound: "
             "nothing between the points was tried."
