@@ -22,7 +22,7 @@ from scipy.interpolate import RegularGridInterpolator, interp1d
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.contact import Equilibrium, without_contact
 from fem_reference.common.elasticity import on_grid
-from fem_reference.common.loading import Progressed, follow
+from fem_reference.common.loading import Progressed, Step, follow
 from fem_reference.common.plasticity import History
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
@@ -81,13 +81,13 @@ def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCy
     """
     limits = limits_of(scene)
     body = build(plan(scene.model_copy(update={"wear": None})))
-    first, found = None, []
+    first: list[Step] = []
+    found = []
     for depths in ways:
         model, state, worn, cycles = body, body.virgin(), np.zeros(body.heights.shape), []
         for cycle in range(1, scene.loading.cycles + 1):
             targets = [target for target in model.plan.schedule.targets if target.cycle == cycle]
-            again = cycle == 1 and first is not None
-            steps = first if again else follow(model, Progressed(state, targets))
+            steps = first if first and cycle == 1 else follow(model, Progressed(state, targets))
             first, state = first or steps, steps[-1].state
             if not state.converged or state.history is None:
                 raise ValueError(f"cycle {cycle}: {state.ending or 'not converged'}")

@@ -389,11 +389,11 @@ class TestFem:
         measures = ("pressure", "squares", "strain", "residual", "moved", "volume")
         rows = [
             {"cells": cells, "mode": mode, "cycle": cycle, "wears": 4e-9} | dict.fromkeys(measures, value)
-            for cells, value in zip(fem.CELLS, (0.06, 0.05, 0.04), strict=True)
+            for cells, value in zip(fem.CELLS, (0.06, 0.04), strict=True)
             for mode in ("own", "given")
             for cycle in (1, fem.CYCLES)
         ]
-        assert fem.shrinking(pd.DataFrame(rows[::4]), "strain") == pytest.approx(5 / 6, rel=1e-12)
+        assert fem.shrinking(pd.DataFrame(rows[::4]), "strain") == pytest.approx(4 / 6, rel=1e-12)
         assert wrong(self.NAME, rows) == set()
         assert wrong(self.NAME, [{**row, "wears": 0.0} for row in rows]) == {"wears"}
         coarsest = fem.CELLS[0]
@@ -430,7 +430,7 @@ class TestFem:
         assert asked[0] is None and np.sum(asked[1], axis=0).max() == pytest.approx(
             fem.CYCLES * fem.THICK, rel=1e-12
         )
-        assert len(rows) == 12 and rows[-1]["wears"] == pytest.approx(fem.THICK)
+        assert len(rows) == 8 and rows[-1]["wears"] == pytest.approx(fem.THICK)
         assert rows[-1]["pressure"] == pytest.approx(3.0 / np.sqrt(16 + 36 + 4))
         assert rows[-1]["residual"] < 1e-12
         assert rows[-1]["strain"] == pytest.approx(0.1 / 1.1) and rows[-1]["volume"] == pytest.approx(0.25)

@@ -21,7 +21,7 @@ from verification.compare.measures import Plane, depths_compared, patch_pressure
 from verification.judging import relative_l2
 from verification.runs.sampling import Tables
 
-CELLS = (32, 48, 64)
+CELLS = (32, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size
 CYCLES, STEPS = 2, 2
 LIMIT, THICK = 0.012, 4e-9  # of the plastic strain, down to this depth in m below the surface of each cycle
