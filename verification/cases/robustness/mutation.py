@@ -16,8 +16,16 @@ from verification.cases.case import Context
 from verification.runs.threads import EVERY_LIBRARY
 
 ROOT = Path(__file__).resolve().parents[3]
-TOOL, FEW = "verification.robustness.mutants", "sam.tribofilm.law"
+TOOL = "verification.robustness.mutants"
 """The program that perturbs the numbers: of the source, and not imported here before it is needed."""
+MODULES = {
+    "quick": ("sam.tribofilm.law",),
+    "full": (
+        *("sam.kernels.primitives", "sam.plasticity.flow", "sam.tribofilm.law"),
+        *("fem_reference.common.back_stress", "fem_reference.common.elasticity"),
+    ),
+}
+"""Those that are asked about; frozen.csv has what was found of all, in 25 minutes of processor time."""
 
 
 def needs() -> str:
@@ -41,20 +49,20 @@ def checked(*options: str) -> dict:
 
 
 def frame(context: Context) -> Iterator[dict[str, Any]]:
-    """What `checked` finds; at the level quick, where it is asked by name, of one module."""
-    return judged(checked(*("--module", FEW) * (context.level == "quick")))
+    """What `checked` finds of the modules of a level, at quick only where it is asked by name."""
+    return judged(checked(*(word for name in MODULES[context.level] for word in ("--module", name))))
 
 
 def judged(found: Mapping) -> Iterator[dict[str, Any]]:
     """What the gates ask, of the judgements as read back; by module how many mutants were killed of those
     that count; what no test noticed, and the constants that must not matter.
     """
-    from verification.robustness.mutants import changes, scope  # noqa: PLC0415 - of the source only
+    from verification.robustness.mutants import changes, frozen, scope  # noqa: PLC0415 - of the source only
 
     counts, kinds = Counter(), {"number": "numbers", "row": "table rows"}
     kinds |= {"comparison": "comparisons", "branch": "branches"}
     modules: dict[str, set[str]] = {}
-    explained, lost = scope.constants("explained"), found["lost"]
+    explained, lost, kept = scope.constants("explained"), found["lost"], frozen.read()
     survivors = [{"where": name, "what": what} for name, what in lost.items()]
     for one in found["judged"]:
         mutant = changes.Mutant(**one["mutant"])
@@ -81,6 +89,8 @@ def judged(found: Mapping) -> Iterator[dict[str, Any]]:
         "by an error or the time": len(killed) - asserted,
         "tests": found["tests"],
         "time [s]": found["seconds"],
+        "killed in the campaign": sum(int(row[kind]) for row in kept for kind in frozen.COLUMNS[2:5]),
+        "survived in it": sum(len(row["survivors"]) for row in kept),
     }
     for words, names in modules.items():
         for name in sorted(names):
