@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sam.grid import Window
 from sam.scene import Scene, Wear
 from verification.runs import models
 from verification.runs.model_range import contact_modulus, rms_slope
@@ -168,11 +169,11 @@ def plastic_boxes(scene: Scene, plan: Any, beyond: float = 0.0) -> list[Expected
     faces = np.asarray(grid.depths if grid.faces is None else grid.faces)
     tolerance = scene.solver.tolerance
     if scene.patch_surface is not None or not loaded(scene):
-        sides, worn = [_rough_sides(scene, plan)], scene.wear is not None and scene.wear.removes
-        if worn and scene.loading.cycles > 1 and sides[0] != grid.shape:
+        window, layers = _rough_box(scene, plan)
+        sides, worn = [window.shape], scene.wear is not None and scene.wear.removes
+        if worn and scene.loading.cycles > 1 and window != grid.whole:
             sides.append(grid.shape)  # where summits are worn others touch
-        layers, operator, in_cells = max(len(faces) - 1, 1), scene.solver.operator, tuple(faces / grid.hx)
-        repeats = plan.period is not None
+        operator, in_cells, repeats = scene.solver.operator, tuple(faces / grid.hx), plan.period is not None
         return [ExpectedBox(*each, layers, tolerance, False, operator, in_cells, repeats) for each in sides]
     depths = (faces[1:] + faces[:-1]) / 2
     if scene.loading.misfit_sphere:
@@ -194,25 +195,30 @@ def contact_share(scene: Scene, pressure: float) -> float:
     return erf(sqrt(pi) * pressure / (contact_modulus(scene) * slope)) if slope else 1.0
 
 
-def _rough_sides(scene: Scene, plan: Any) -> tuple[int, int]:
-    """Cells in x and y of the box around a rough contact: where the gap is smallest, WIDER_SPOTS wider."""
+def _rough_box(scene: Scene, plan: Any) -> tuple[Window, int]:
+    """The box around a rough contact, where the gap is smallest, WIDER_SPOTS wider; and its layers, as deep as
+    yields below a sphere with the area of the largest spot and with the mean pressure of all.
+    """
+    from scipy.ndimage import label
+
     from sam.contact import Counters, around
     from sam.plasticity import or_whole
 
-    grid, force = plan.grid, scene.loading.force
-    if (
-        plan.period is not None
-        or not force
-        or scene.counterbody is None
-        or len(plan.schedule.path) > 1
-        or plan.schedule.renews
-    ):
-        return grid.shape
+    grid, force, depths = plan.grid, scene.loading.force, len(plan.grid.depths)
+    if not force or scene.counterbody is None:
+        return grid.whole, depths
     area = grid.nx * grid.ny * grid.cell_area
     plane = scene.counterbody.shape == "flat"
     share = contact_share(scene, force / area) if plane else pi * prod(plan.axes) / area
     gap = plan.problem(Counters()).gap(plan.schedule.peak)
-    return or_whole(around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))), grid).shape
+    spots = label(gap <= np.quantile(gap, min(share, 1.0)))[0]
+    radius = sqrt(np.bincount(spots.flat)[1:].max() * grid.cell_area / pi)
+    ratio = 1.5 * force / (share * area) / scene.body.plasticity.strength().least(0.0)
+    deep = radius * _elastic_zone(min(ratio, MOST_RATIO), scene.body.poisson)[1]
+    layers = min(max(int(np.searchsorted(grid.depths, deep)) + 1, 2), depths)
+    if plan.period is not None or len(plan.schedule.path) > 1 or plan.schedule.renews:
+        return grid.whole, layers
+    return or_whole(around(gap <= np.quantile(gap, min(WIDER_SPOTS * share, 1.0))), grid), layers
 
 
 def _box_of_sphere(scene: Scene, grid: CellGrid, depths: np.ndarray, beyond: float) -> ExpectedBox:
@@ -431,18 +437,35 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
     work |= {"box set-up": sum(box.set_up for each in either for box in each) / 2}
-    if rough and (last.nx, last.ny) != grid.shape:  # stress in y = 0, beside the box
-        if last.swept and last.large:  # by an operator of its own
-            plane = replace(last, nx=grid.nx, layers=depths)
-            work["box set-up"] += plane.set_up
-            iterations += plane.waves * depths / (last.waves * last.layers)
-        else:
-            work["beside"] = 36.0 * depths * last.layers * cells / 2
+    plane, coefficients = _beside(scene, plan, last)
+    if plane is not None:
+        work["box set-up"] += plane.set_up
+        iterations += plane.waves * plane.layers / (last.waves * last.layers)
+    work["beside"] = coefficients
     if last.swept:
         work["swept"] = iterations * last.width / 8 * 6.0 * last.layers * last.waves * kept
     else:
         work["box"] = iterations * last.width / 8 * sum(each[-1].coefficients for each in either) / 2
     return Counted(memory, work)
+
+
+def _beside(scene: Scene, plan: Any, box: ExpectedBox) -> tuple[ExpectedBox | None, float]:
+    """What the stress in y = 0 outside of a box takes: an operator of all columns through the box, if that is
+    large, or so many coefficients.
+    """
+    from sam.contact.convolution import Convolution
+
+    grid, layers, depths = plan.grid, box.layers, len(plan.grid.depths)
+    rows, window = grid.axis_rows, Window((grid.nx - box.nx) // 2, (grid.ny - box.ny) // 2, box.nx, box.ny)
+    if plan.rough is not None and (box.nx, box.ny) != grid.shape:
+        window = _rough_box(scene, plan)[0]
+    first, end = min(window.j0, rows.j0 - 1), max(window.j0 + window.ny, rows.j0 + rows.ny + 1)
+    whole = window.nx == grid.nx and end - first == window.ny
+    if not (plan.period is None and (not box.large or box.operator == "dense")):
+        wide = replace(box, nx=grid.nx, ny=end - first, layers=depths, exchange=False)
+        return (None if whole and layers == depths else wide), 0.0
+    lags = Convolution.lags_needed(window, rows)
+    return None, 36.0 * (depths - whole * layers) * layers * lags[0] * lags[1]
 
 
 def _axisymmetric(scene: Scene, plan: Any) -> Counted:
