@@ -38,8 +38,8 @@ MEMORY = {  # chunks: what is worked through piece by piece
 TIME = {
     models.SAM: {
         "solve": 0.0435, "contact": 3.33e-8, "patch contact": 2.6e-9, "stresses": 6.28e-8, "patch": 9.64e-8,
-        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.19e-8, "box": 1.13e-9, "swept": 6e-8,
-        "patch steps": 1.45e-6, "patch iterations": 1.6e-6, "beside": 3.6e-8,
+        "tables": 1.7e-3, "layered": 1.05e-7, "box set-up": 5.5e-8, "box": 1.13e-9, "swept": 6e-8,
+        "evaluations": 8e-7, "beside": 4.3e-8,
     },
     models.FEM: {"solve": 0.129, "factors": 3.01e-7, "points": 0.0},
     models.FEM_3D: {"solve": 0.0712, "multigrid": 7.6e-8},
@@ -421,8 +421,6 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     kept = 4 if rough else 2 if loads > 1 or len(plan.schedule.path) > 1 else 1  # numbers of a wave number
     if rough:
         rows, further = rough_iterations(scene, plan)
-        size = last.nx * last.ny * log2(last.nx * last.ny)
-        work |= {"patch steps": rows * size, "patch iterations": further * size}
         iterations = ELASTIC_ITERATIONS * rows + further
     else:
         iterations = plastic_iterations(scene, grid) * steps * cycles**SETTLES
@@ -437,6 +435,7 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
     work |= {"box set-up": sum(box.set_up for each in either for box in each) / 2}
+    work["evaluations"] = iterations * (boxes[0].cells + last.cells) / 2
     plane, coefficients = _beside(scene, plan, last)
     if plane is not None:
         work["box set-up"] += plane.set_up
@@ -461,11 +460,11 @@ def _beside(scene: Scene, plan: Any, box: ExpectedBox) -> tuple[ExpectedBox | No
         window = _rough_box(scene, plan)[0]
     first, end = min(window.j0, rows.j0 - 1), max(window.j0 + window.ny, rows.j0 + rows.ny + 1)
     whole = window.nx == grid.nx and end - first == window.ny
-    if not (plan.period is None and (not box.large or box.operator == "dense")):
+    if plan.period is not None or (box.large and box.operator != "dense"):
         wide = replace(box, nx=grid.nx, ny=end - first, layers=depths, exchange=False)
         return (None if whole and layers == depths else wide), 0.0
-    lags = Convolution.lags_needed(window, rows)
-    return None, 36.0 * (depths - whole * layers) * layers * lags[0] * lags[1]
+    lags, times = Convolution.lags_needed(window, rows), 1 + (scene.wear is not None and scene.wear.removes)
+    return None, 36.0 * times * (depths - whole * layers) * layers * lags[0] * lags[1]
 
 
 def _axisymmetric(scene: Scene, plan: Any) -> Counted:
