@@ -68,7 +68,7 @@ COARSE = {"steps": "1", "unload": "false", "cells_per_radius": "6"}
 RUNGS = (
     Rung("tiny elastic sphere", "hertz-sphere", {"cells": "[33, 33]"}),
     Rung("sphere sliding on a body that yields", "starts/sliding", {"steps": "2"}),
-    Rung("rough elastic, 512 × 512 cells", "starts/rough", {"cells": "[512, 512]"}),
+    Rung("rough elastic, 256 × 256 cells", "starts/rough", {"cells": "[256, 256]"}),
     Rung("sphere on Swift steel", "plastic-swift-rigid"),
     Rung("moving sphere on Swift steel", "moving-sphere", PATH),
     Rung("rough plastic step, 128 × 128 × 13 cells", "starts/rough", PATCH, SWIFT),
