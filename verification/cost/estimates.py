@@ -430,13 +430,14 @@ def _sam(scene: Scene, plan: Any) -> Counted:
         iterations = plastic_iterations(scene, grid) * rows
     if count := plan.plasticity.back_stresses:
         iterations *= WITH_BACK_STRESSES + EACH_BACK_STRESS * count
-    plane, work["beside"] = _beside(scene, plan, last)
+    plane, beside = _beside(scene, plan, last)
+    work["beside"] = beside * (1 + (scene.wear is not None and scene.wear.removes))  # other strain, unloaded
     fields, share = max(box.cells for box in [last, *plane]), PERIODIC_FIELDS if last.periodic else 1.0
     memory = {  # the stresses of the elastic body are gone when the boxes come
         "surface": memory["surface"],
         "boxes": float(sum(box.width * box.coefficients for box in [*held(boxes), *plane])),
         "fields": 8.0 * fields * share,
-        "set-up": 8.0 * last.set_up / last.layers,
+        "set-up": 8.0 * max(last.set_up / last.layers, beside / depths),
         "chunks": 1.0,
     }
     either = [plastic_boxes(scene, plan, beyond) for beyond in (-UNDECIDED, UNDECIDED)]
@@ -469,8 +470,7 @@ def _beside(scene: Scene, plan: Any, box: ExpectedBox) -> tuple[list[ExpectedBox
     if plan.period is not None or (box.large and box.operator != "dense"):
         wide = replace(box, nx=grid.nx, ny=end - first, layers=depths, exchange=False)
         return [wide] * (not whole or layers < depths), 0.0
-    lags, times = Convolution.lags_needed(window, rows), 1 + (scene.wear is not None and scene.wear.removes)
-    return [], 36.0 * times * (depths - whole * layers) * layers * lags[0] * lags[1]
+    return [], 36.0 * (depths - whole * layers) * layers * prod(Convolution.lags_needed(window, rows))
 
 
 def _axisymmetric(scene: Scene, plan: Any) -> Counted:
