@@ -266,7 +266,9 @@ def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray
 
 
 def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
-    """(u_z, u_x) in m of the mean plane of a periodic patch by its mean strain, (6, layers, nx, ny)."""
+    """(u_z, u_x) in m of the mean plane of a periodic patch by its plastic strain, (6, layers, nx, ny): the
+    solver gives displacements about that plane, but the mean of the tractions does work on it.
+    """
     e, nu = strain.mean(axis=(2, 3)), scene.body.poisson
     along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
     return -np.array([along_z @ thick, 2 * e[4] @ thick])

@@ -146,7 +146,9 @@ def _pressure(result: Result, reference: Reference) -> Values:
 
 
 def _pressure_on_cells(scene: Scene, sam: Result, other: Result) -> Measured:
-    """Both over the cells of SAM: between other cells bilinear, between nodes linear in p or p^2."""
+    """Both pressures on the cells of SAM: that of other cells bilinear, of rings of nodes linear in p where
+    the body yields, else in p^2; of the three-dimensional model at its nodes.
+    """
     if other.model == FEM_3D:
         return Measured(*nodal_pressures(sam, other))
     x, y, p = pressure_map(sam)
@@ -230,7 +232,7 @@ def _below_spots(scene: Scene, sam: Result, fem: Result) -> Measured:
 
 
 def _strip_width(result: Result, reference: Reference) -> float:
-    """Of a wave, where the line through p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939)."""
+    """Contact width of a wave in m: where the line p^2/cos^2 psi over sin^2 psi ends (Westergaard 1939)."""
     x, _, p = pressure_map(result)
     wave, bears = reference.units["wave"], p[:, 0] > 0.0
     use = bears & np.roll(bears, 1) & np.roll(bears, -1)

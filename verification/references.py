@@ -54,7 +54,7 @@ def _pressed(
     inside: float = np.inf,
     share: float = 1.0,
 ) -> Reference:
-    """What contacts on a circle share. stress: at depths on the axis, (..., 6); share: of the body."""
+    """What round and line contacts share; stress: (..., 6) on the axis; share: of uz in one body."""
     a = exact.contact_radius
     known = {
         "approach": exact.approach,
@@ -92,7 +92,7 @@ def hertz_sphere(scene: Scene) -> Reference:
 
 
 def hertz_line(scene: Scene) -> Reference:
-    """Hertz with the stresses of McEwen (1949), with friction those of its pressure in full slip."""
+    """Hertz's line contact with the stresses of McEwen (1949); friction: that of full slip."""
     exact, nu = cast(LineContact, contact_of(scene)), scene.body.poisson
     a, p0, friction = exact.contact_radius, exact.peak_pressure, scene.coefficient
     largest, depth = exact.largest_von_mises(nu)

@@ -57,6 +57,8 @@ def faults_of_run(path: Path) -> list[str]:
 
 if __name__ == "__main__":
     notebooks = sorted(GALLERY.rglob("*.ipynb"))
+    if not notebooks:
+        sys.exit(f"no notebooks in {GALLERY}: sphinx makes them, see docs in Makefile")
     faults = [fault for path in notebooks for fault in faults_of(path)]
     files = [path for path in GALLERY.with_name("gallery").rglob("*") if path.is_file()]
     left = [path.name for path in files if path.suffix not in (".py", ".rst")]

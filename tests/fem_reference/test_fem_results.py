@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the axisymmetric model returns: record, steps, cycles, units, statuses, estimates, what it refuses."""
+"""What the axisymmetric model returns: record, steps, cycles, statuses, estimates, what it refuses."""
 
 import numpy as np
 import pytest
@@ -17,9 +17,8 @@ from sam.scene.result import COLUMNS, COST, QUANTITIES, Status
 PUNCH = {"shape": "punch", "radius": RADIUS}
 
 
-def scene(cells=8, counter=SPHERE, *, poisson=0.3, plasticity=None, units=(1.0, 1.0), **loading):
+def scene(cells=8, counter=SPHERE, *, poisson=0.3, plasticity=None, **loading):
     return small_scene(
-        *units,
         body={"poisson": poisson, "plasticity": plasticity},
         counterbody=counter,
         loading=loading,
@@ -92,9 +91,6 @@ def test_no_force(made):
     assert [q[name] for name in zero] == [0.0] * len(zero) and q["mises_max_depth_m"] is None
     assert not any(result.tables["history"]["force_N"]) and not result.tables["line"]["p_Pa"].any()
     assert not result.tables["plane"]["mises_Pa"].any() and np.isfinite(result.tables["axis"]["z_m"]).all()
-
-
-# --- units ---
 
 
 # --- statuses and refusals ---

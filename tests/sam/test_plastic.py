@@ -65,6 +65,14 @@ def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     assert (axis["mises_Pa"][peak & (axis["peeq"] == 0)] <= curve.stress(0.0) * (1 + 1e-6)).all()
 
 
+def test_the_body_is_of_cells_of_the_grid(swift4):
+    body, grid = swift4.grids["peak"]["body"], choose_grid(yielding(4, loading={"steps": 4}, grid=FEW))
+    for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
+        first = np.abs(centres - h / 2 - faces[0]).argmin()
+        np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
+    np.testing.assert_allclose(body.z, grid.layer_faces[: len(body.z)], rtol=1e-12)
+
+
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
     """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for
     bit.

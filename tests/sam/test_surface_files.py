@@ -2,6 +2,7 @@
 """Measured heights in files: read with the right orientation, sign and unit, or refused by name."""
 
 import io
+import json
 import pickle
 import struct
 import tracemalloc
@@ -13,7 +14,7 @@ import pytest
 from builders import measured_scene as rough
 
 import sam
-from sam.scene import HeightMap, Scene, SceneError, resolved
+from sam.scene import HeightMap, Scene, SceneError, inputs, resolved
 from sam.scene.inputs import InputError
 from sam.scene.surface import processed, readers
 from sam.scene.surface.instrument_child import RefusedError, heights_in
@@ -306,6 +307,32 @@ def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
     words = r"surface.path = .pin.SDF.: no heights, read as sdf: .*Missing required field"
     with pytest.raises(SceneError, match=words):
         rough(tmp_path, "pin.SDF", sdf_in_words()[:150])
+
+
+def said(name: str, shape: list[int], kind: str = "<f8") -> str:
+    head = {"said": {"extent": [1, 1]}, "arrays": {name: [kind, shape]}}
+    return f"print({json.dumps(json.dumps(head))})"
+
+
+@pytest.mark.parametrize(
+    ("script", "message"),
+    [
+        ("import time; time.sleep(60)", "its reader did not end in 0.5 s"),
+        ("import os; os.abort()", "ended without an answer"),
+        ("print('[1]')", "answered nonsense"),
+        (said("heights", [9**99]), "answered nonsense"),
+        (said("heights", [0, 4], "|O"), "answered nonsense"),
+        (said("heights", [0, 4]), "0 x 4 heights"),
+        ("""print('{"refused": "a\\\\u001b[31mb"}')""", r"no heights, read as sdf: a\?\[31mb"),
+    ],
+)
+def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script, message):
+    (tmp_path / "child.py").write_text(script)
+    monkeypatch.setattr(inputs, "CHILD", tmp_path / "child.py")
+    monkeypatch.setattr(inputs, "SECONDS", 0.5 if "sleep" in script else 30.0)
+    monkeypatch.setattr(readers, "find_spec", lambda _: True)
+    with pytest.raises(InputError, match=message):
+        readers.read_instrument("h.sdf", b"")
 
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):

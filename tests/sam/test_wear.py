@@ -106,8 +106,9 @@ def test_strain_at_its_limit_does_not_tear():
 
 
 def test_a_roof_falls_with_what_is_under_it():
-    """The columns of the test before, and a layer that may strain ten times as much over metal beyond its
-    limit down to z = 4: all of it goes, 2 as the roof. Without a roof nothing changes.
+    """Linear between centres 0.5, 1.5 ...: strains 1 0 1 1 0 cross 0.5 at 1, 2 and 4. A layer that may strain
+    ten times as much over metal beyond its limit down to z = 4: all of it goes, 2 as the roof. Without a
+    roof nothing changes.
     """
     limits, layered = StrainLimits(0.5, 0.5, 0), StrainLimits(0.002, 0.02, 2.0)
     assert fallen([1, 0, 1, 1, 0], range(6), limits) == pytest.approx((4, 2, 1, False))

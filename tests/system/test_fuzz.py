@@ -6,12 +6,10 @@ something is wrong.
 import json
 import os
 import random
-import re
 import sys
 import time
 from collections import Counter
 from pathlib import Path
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -32,12 +30,9 @@ from verification.robustness.fuzz import (
     MESHES,
     STUDIES,
     BadInput,
-    bad_input,
     good_meshes,
     lay,
     mutated,
-    odd_array,
-    replaced,
     with_mapping,
     with_pickle,
 )
@@ -54,35 +49,6 @@ COUNT = len(KINDS)
 
 def number_of(kind: str, turn: int = 0) -> int:
     return tuple(KINDS).index(kind) + turn * COUNT
-
-
-def test_inputs_are_the_same_for_the_same_seed():
-    numbers = range(3 * COUNT)
-    inputs = [bad_input(3, number) for number in numbers]
-    assert inputs == [bad_input(3, number) for number in numbers]
-    assert inputs != [bad_input(4, number) for number in numbers]
-    assert [entry.kind for entry in inputs] == 3 * list(KINDS)
-
-
-@pytest.mark.parametrize(
-    ("values", "turn", "expected"),
-    [
-        ([1.0, 2.0], 0, [np.nan, 2.0]),
-        ([1.0, 2.0], 1, [1.0 + 1e-12, 2.0]),
-        ([1.0, 2.0], 2, [0.0, 0.0]),
-        ([1.1, 2.0], 3, np.array([1.1, 2.0], dtype="f4")),
-        ([1.0, 2.0], 4, [1.0]),
-        *(([1, 2], turn, [1]) for turn in range(5)),
-    ],
-)
-def test_an_array_becomes_odd_in_its_values_or_its_shape(values, turn, expected):
-    """Always the first of what may be chosen; only numbers have other values."""
-    rng = SimpleNamespace(randrange=lambda count: turn if count == 5 else 0, choice=lambda some: some[0])
-    np.testing.assert_array_equal(odd_array(rng, np.array(values)), np.array(expected), strict=True)
-
-
-def test_a_text_without_what_is_replaced_stays():
-    assert replaced(random.Random(1), "abc", re.compile("z"), lambda _: "x") == "abc"
 
 
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
@@ -251,17 +217,6 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
     if gates == {"hangs"}:
         monkeypatch.setattr(case, "COMMAND_LIMIT_S", 0.3)
     assert red(case.judge_commands([number_of("values")], tmp_path, (sys.executable, "-c", code))) == gates
-
-
-def test_kinds_that_were_not_tried_are_counted():
-    tally = case.Tally(Counter({(kind, "valid"): 1 for kind in list(KINDS)[2:]}))
-    values = case.CASES[0].values((tally, case.Tally()))
-    assert values["bad-input.kinds-left-out"].value == 2
-
-
-def test_a_name_with_a_null_character_is_passed_as_far_as_systems_do(tmp_path):
-    code = "import sys; sys.exit(0 if sys.argv[1:] == ['plan', 'a'] else 3)"
-    assert case.run_command(["plan", "a\0b"], tmp_path, (sys.executable, "-c", code))[0] == 0
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):

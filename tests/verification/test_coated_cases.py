@@ -114,6 +114,3 @@ def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points
     assert not between.any() and ((compared > under) & (compared < under + 0.1)).any() and compared[-1] > 1.5
     even = Plane(x, z, (1.0 + z) * np.ones((5, 1)))
     np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
-
-
-# --- figures --------------------------------------------------------------------------------------------

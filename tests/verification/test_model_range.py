@@ -9,9 +9,10 @@ from builders import MODULUS, RADIUS, SPHERE, STEEL, SWIFT, scene_text
 
 import sam
 from sam.scene import Result, Scene, Status
+from verification.figures.run import drawings_of
 from verification.runs import models
-from verification.runs.files import read_summary
-from verification.runs.model_range import model_range, range_lines, with_range
+from verification.runs.files import read_run
+from verification.runs.model_range import OUTSIDE, model_range, range_lines, with_range
 from verification.runs.models import ModelError
 
 ELASTIC, YIELDING = {}, {"plasticity": SWIFT}
@@ -166,9 +167,16 @@ def test_what_only_the_solution_shows_ends_in_a_status_or_goes_on_marked(folder,
     text = scene_text().replace("0.65 N", "12 N") + SOFT
     (folder / "soft.toml").write_text(text + ("[solver]\nbeyond_model = true\n" if more else ""))
     said = samfem("solve", "soft.toml", code=code)
-    summary = read_summary(folder / "soft-sam")
+    run = read_run(folder / "soft-sam")
+    summary, drawn = run.summary, drawings_of(run)
     assert summary["status"] == status and summary["model_range"]["outside"] is True
     assert summary["model_range"]["a_over_R"] == pytest.approx(
         summary["quantities"]["contact_radius_m"] / RADIUS
     )
     assert "outside of the model: a/R = 0.5" in said.err and ("beyond_model = true" in said.err) == bool(code)
+    assert len(run.tables) >= 4 and all((table[OUTSIDE] > 0.5).all() for table in run.tables.values())
+    meshes = [*(folder / "soft-sam").glob("*.vt[ru]")]
+    assert meshes and drawn and all(OUTSIDE.encode() in mesh.read_bytes() for mesh in meshes)
+    for drawing in drawn.values():
+        assert drawing.figure.get_supxlabel().startswith("outside of the model: a/R = 0.5")
+        assert {*drawing.data[OUTSIDE]} == {summary["model_range"]["a_over_R"]}

@@ -164,6 +164,20 @@ def test_an_exodus_mesh_is_read(results, beside, mapped, tmp_path):
     assert set(rows) == {*PRESSURES, CENTRE, "uz_m on the line"} and all(row.passed for row in rows.values())
 
 
+def test_a_mesh_of_several_steps_is_read_at_its_last_or_a_named_one(results, beside, mapped, tmp_path):
+    mesh, sets = abaqus_mesh(results[1]), ""
+    for step, share in ((1, 0.5), (2, 2.0)):  # the second is the whole pressure
+        mesh.point_data["CPRESS"] *= share
+        mesh.save(tmp_path / f"own-{step}.vtu")
+        sets += f'<DataSet timestep="{step}" file="own-{step}.vtu"/>'
+    (tmp_path / "own.pvd").write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+    assert beside(mapped(None, name="own.pvd"))[0]["p_max_Pa"].passed
+    rows, _ = beside(mapped(None, ("axes", "step = 1\naxes"), name="own.pvd"))
+    assert rows["p_max_Pa"].error == pytest.approx(1.0, abs=1e-2)  # half of it
+    third = mapped(None, ("axes", "step = 3\naxes"), name="own.pvd")
+    assert "step = 3: at most 2" in refused(third, tmp_path)
+
+
 def refused(name, folder, scene=SCENE) -> str:
     with pytest.raises(SceneError) as caught:
         read_data(folder / name, scene)

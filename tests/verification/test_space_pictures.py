@@ -34,21 +34,14 @@ SCENES = {
         "surface": {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6},
         "loading": {"force": 0.02},
     },
-    "line": {
-        "body": SOFT,
-        "counterbody": {"shape": "cylinder", "radius": 1e-3, "length": 1e-2},
-        "loading": UNLOADED | {"force": 1.5e3},
-    },
 }
 GRIDS = {
     "unloaded": {"grid": {"cells": (17, 17), "extent": (8e-6, 8e-6)}},
     "elastic": {"grid": {"cells": (17, 17)}},
     "yielding": {"grid": {"cells": (33, 33)}},
     "rough": {"grid": {"cells": (16, 16), "extent": (8e-6, 8e-6)}},
-    "line": {"grid": {"cells": (33, 1)}},
 }
 COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}, models.FEM_3D: {"cells_per_radius": 4, "box": 4}}
-COARSE[models.FEM_LINE] = COARSE[models.FEM_3D]
 _FOLDERS: list[TemporaryDirectory] = []
 
 
@@ -100,15 +93,6 @@ def test_pictures_show_what_the_tables_hold(model):
     assert mesh.points[:, 2].min() / imprint.exaggeration == pytest.approx(1e-3 * imprint.limits[0])
 
 
-@pytest.mark.parametrize("model", [models.SAM, models.FEM_LINE])
-def test_a_long_cylinder_is_drawn_as_long_as_two_widths_of_its_contact(model):
-    """Two half-widths to each side, of cells as wide as the length and of a section alike."""
-    width = 2e6 * found("line", model).run.quantities["contact_half_width_m"]
-    boxes = [picture(kind, "line", model).box for kind in ("contact", "imprint", "plastic-zone")]
-    assert [np.abs(box[1]).max() for box in boxes[:2]] == pytest.approx([width] * 2, rel=0.2)
-    assert 0.9 * width <= boxes[2][1, 1] <= 1.5 * width
-
-
 DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
 
 
@@ -153,6 +137,13 @@ class TestCommand:
         figures = {path.name for path in (sphere_folder / "sphere-sam" / "figures").iterdir()}
         assert {"mises.png", "history.png"} <= figures and not any("3d" in name for name in figures)
 
+    @pytest.mark.usefixtures("cannot")
+    def test_view_says_that_it_cannot_and_writes_nothing(self, tmp_path, monkeypatch, samfem):
+        monkeypatch.chdir(tmp_path)
+        shown = samfem("view", str(found("elastic").run.folder), "--out", "a.png", code=1)
+        assert shown.out == "" and shown.err.count("\n") == 1 and offscreen.INSTALL in shown.err
+        assert list(tmp_path.iterdir()) == []
+
     @pytest.mark.parametrize(
         ("words", "said"),
         [
@@ -160,6 +151,7 @@ class TestCommand:
             (["RUN", "--out", "a.jpg"], "a.jpg does not end in .png"),
             (["RUN", "--html", "a.png"], "a.png does not end in .html"),
             (["RUN", "--out", "none/a.png"], "none/a.png cannot be written"),
+            (["RUN", "--picture", "worn", "--out", "a.png"], "does not have what --picture worn shows"),
             (["RUN", "--picture", "wron"], "invalid choice: 'wron'"),
             (["RUN", "--out", "a.png", "--html", "a.html"], "not allowed with argument"),
         ],

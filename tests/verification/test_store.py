@@ -18,8 +18,16 @@ from stored import BOTH, COARSE, flipped, same
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
-from verification.runs.files import json_text, write_run
-from verification.runs.store import FOLDER, Store, default_store, identity, solve_or_reuse
+from verification.runs.files import FolderError, json_text, write_run
+from verification.runs.store import (
+    FOLDER,
+    LIMIT,
+    Store,
+    default_store,
+    identity,
+    kept_coefficients,
+    solve_or_reuse,
+)
 
 # what is stored
 
@@ -241,6 +249,12 @@ def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
     message = capsys.readouterr().err
     assert message.count("\n") == 1 and f"warning: store {own.folder}: {why}" in message and FOLDER in message
     assert own.entries() == [] and own.left_over() == []
+
+
+def test_a_limit_of_coefficients_that_is_no_number_is_refused(monkeypatch):
+    monkeypatch.setenv(LIMIT, "2 GB")
+    with pytest.raises(FolderError, match="SAMFEM_COEFFICIENTS = 2 GB: a number of bytes is needed"):
+        kept_coefficients()
 
 
 def _keep_and_die(folder: Path, result) -> None:

@@ -46,7 +46,7 @@ def plane_of(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def load(scene: Scene, result: Result) -> float:
-    """Tension over the largest pressure, or what is given: the sum of the pressure; the approach."""
+    """Largest of three: relative errors of total force and of given approach; tension over peak pressure."""
     force = force_of(scene, result)
     if result.model == "sam":
         hx, hy = result.discretisation["cell_m"]

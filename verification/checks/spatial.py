@@ -73,7 +73,7 @@ class Spatial(Formed):
         return np.stack([np.bincount(self.corners.ravel(), each, self.nodes.shape[1]) for each in flat])
 
     def equilibrium(self) -> dict[str, float]:
-        """Largest nodal force without balance, largest |q - mu p| of a node, sum of p less F; over F."""
+        """Largest unbalanced nodal force, |q - mu p| of a node in contact, sum of p less F; each over F."""
         model, scale = self.model, self.model.scales.peak_force
         in_contact = np.zeros(self.nodes.shape[1], dtype=bool)
         in_contact[model.surface.ravel()[model.candidates[self.state.active]]] = True

@@ -74,7 +74,7 @@ class Plane:
 
 
 def depths_compared(plane: Plane, x: float, radius: float = 1.0) -> np.ndarray:
-    """Depths from SHALLOWEST radii on with SHARE of the largest strain there at x, not beside the jump."""
+    """Depths from SHALLOWEST radii with SHARE of the largest strain at x or more; none next to the jump."""
     z = np.arange(SHALLOWEST, plane.z[-1] / radius, SPACING) * radius
     above, under = plane.z[plane.z < plane.jump], plane.z[plane.z >= plane.jump]
     if above.size:
@@ -243,7 +243,7 @@ class Spot(NamedTuple):
 
 
 def spots(sam: Tables, fem: Tables) -> list[Spot]:
-    """Spots that bear more than LEAST of the force, by x. Raises ValueError when cells are not the same."""
+    """Regions of contact in either model that bear over LEAST of F, by x. ValueError: unlike cells."""
     (u, v, own), (x, y, p) = patch_pressure(sam), patch_pressure(fem)
     if own.shape != p.shape or not (np.allclose(u, x) and np.allclose(v, y)):
         raise ValueError(f"the patches differ: {own.shape} and {p.shape} cells")

@@ -220,7 +220,7 @@ def _refined(z: np.ndarray, rows: np.ndarray, values: np.ndarray, name: str) -> 
 
 
 def _expected(scene: Scene) -> tuple[float, dict[str, float]]:
-    """Contact radius in m, and column -> largest value to a factor of ten by Hertz, NaN: unknown."""
+    """Contact radius in m, and column -> its largest value by Hertz, to a factor of ten; NaN: unknown."""
     radius, pressure, approach = float(max(hertz_semi_axes(scene))), math.nan, math.nan
     body, other, loading = scene.body, scene.counterbody, scene.loading
     if other is None:

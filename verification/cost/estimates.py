@@ -365,7 +365,7 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
 
 @lru_cache(maxsize=64)
 def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
-    """(radius, depth) in Hertz radii where his stress exceeds the yield stress, p0 = ratio times that."""
+    """(radius, depth) in Hertz radii of where the stress of Hertz exceeds the yield stress, p0/ratio."""
     from verification.reference.hertz import subsurface_stress
     from verification.reference.stress import von_mises
 
@@ -517,7 +517,7 @@ def _line(scene: Scene, plan: Any) -> Counted:
 
 
 def _held_states(scene: Scene, plan: Any) -> float:
-    """Bytes of the states held while a counter-body moves: ends of passes, and all of a judged period."""
+    """Bytes of the states kept while a counter-body moves: ends of passes, and all of a judged period."""
     if not (scene.moves and flows(scene)):
         return 0.0
     plasticity, judging = scene.body.plasticity, plan.judging

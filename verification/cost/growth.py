@@ -78,7 +78,9 @@ def climb(rungs: Sequence[Rung], report: Progress = lambda *_: None) -> list[dic
 
 
 def applied(nx: int, ny: int, layers: int, error: float = 0.0) -> dict[str, Any]:
-    """The residual-stress operator of a box, alone: seconds to apply and set up, bytes; error: of sweeps."""
+    """The residual-stress operator of a box of cells, in a process of its own: processor seconds of one
+    application and of the set-up, bytes of its coefficients and of all; error: of sweeps, 0: it is dense.
+    """
     setup, apply_s, stored, peak = alone(_applied, nx, ny, layers, error)
     size = {"cells": nx * ny * layers, "plane": nx * ny, "depth": layers}
     cost = {"cpu-s": apply_s, "set-up-s": setup, "stored": stored, "memory": peak - idle_bytes(models.SAM)}
@@ -210,7 +212,9 @@ def fitted(
     matters: float,
     known: Mapping[str, float],
 ) -> dict[str, float]:
-    """Factors >= 0 of the counts by least squares of relative errors from `matters` on; known: given ones."""
+    """Factors >= 0 of the counts by least squares of the errors, each over what was measured or, if that is
+    smaller, over `matters`; known: factors that are not sought.
+    """
     from scipy.optimize import nnls
 
     names = [name for name in dict.fromkeys(name for each in counts for name in each) if name not in known]

@@ -315,7 +315,9 @@ def _uncertainty(scene: Scene, model: str, cells: float | None = None) -> tuple[
 
 
 def check_needs(scene: Scene, model: str, available: float | None = None, *, anyway: bool = False) -> Any:
-    """The plan of a scene. ModelError for what `model` cannot do, too much memory, or time but `anyway`."""
+    """The plan of a scene. Raises ModelError if `model` cannot represent it, or would need more memory than
+    `available` bytes, by default this machine's, or, unless `anyway`, more time than LONGEST.
+    """
     models.check(scene, model)
     available = memory_bytes() if available is None else available
     made = models.plan(scene, model)

@@ -22,7 +22,9 @@ TARGETS = (0.05, 0.01, 0.003)
 
 @dataclass(frozen=True)
 class Reached:
-    """Where a curve reaches an error. value: cost, or None; coarsest: an upper bound; smallest: error."""
+    """Where a curve reaches an error. value: cost, or whatever was interpolated, None if it never does;
+    coarsest: even the first point is as good, so that the value is an upper bound; smallest: of the errors.
+    """
 
     value: float | None
     coarsest: bool
@@ -30,7 +32,7 @@ class Reached:
 
 
 def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
-    """The points between which the error falls to `target` for good, (0, 0): the first; None: never."""
+    """Two points between which the error falls to `target` for good, (0, 0): at the first; None: never."""
     above = ~(np.asarray(errors, dtype=float) <= target)  # nan is above
     if not above.size or above[-1]:
         return None
@@ -39,7 +41,9 @@ def bracket(errors: Sequence[float], target: float) -> tuple[int, int] | None:
 
 
 def at_error(values: Sequence[float], errors: Sequence[float], target: float, floor: float = 0.0) -> Reached:
-    """The value at which the error is `target`, log-log in the bracket; coarse to fine; floor: of errors."""
+    """The value (cost, cells) at which the error is `target`, log-log between the points of the bracket.
+    values, errors: (n,), coarse to fine, values positive; floor: errors count as no smaller.
+    """
     values, errors = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     if values.shape != errors.shape or values.ndim != 1 or not np.all(values > 0.0):
         raise ValueError(f"values and errors: of one length, values positive, not {values} and {errors}")

@@ -2,6 +2,11 @@
 """Figures of runs, comparisons and reports: functions that take results, or curves and fields in the units of
 the axes, and return a `Drawing`, a figure of matplotlib and the columns of its CSV file. matplotlib is
 imported by the modules here only, which whoever draws loads on use.
+
+`style`: the one look and how figures are written; `check`: what cannot be read in one.
+`lines`, `profiles`, `maps`, `specials`: lines over x, curves above their errors, fields, all others.
+`run`, `run_maps`, `places`, `repeated`, `running_in`, `space`: of a finished run.
+`compared`, `fit`, `sweep`, `work_precision`: of comparisons, fits, sweeps, and error over time.
 """
 
 from __future__ import annotations

@@ -280,7 +280,7 @@ def refinement(
     xlabels: Mapping[str, str],
     ylabel: str,
 ) -> Drawing:
-    """Strains in % over h down to their limits; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
+    """Strains in % over h, to the limit at h = 0; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
     drawn: dict[str, dict[str, Curve]] = {}
     for title, own in panels.items():
         panel = drawn[title.capitalize()] = {}
@@ -322,7 +322,7 @@ LINE_ON_POINTS = {
 
 
 def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]], deep: float) -> Drawing:
-    """Yield stress in GPa to `deep` (m), without strain and with 1 %; name -> function of m, strain."""
+    """Yield stress to `deep` (m), without plastic strain and with 1 %; cases: name -> Pa of (m, strain)."""
     z = np.linspace(0.0, deep, 401)
     titles = {0.0: "Before any plastic strain", 0.01: "After a plastic strain of 1 %"}
     drawn = {

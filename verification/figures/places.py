@@ -31,7 +31,9 @@ IN_FILM, BELOW = 9, 77
 
 @dataclass(frozen=True)
 class SurfaceMap:
-    """Fields at the peak, x (nx,), y (ny,) in m, name -> (nx, ny). border: cells that do not count."""
+    """Fields on the cells (or nodes) of the surface at the peak load. x (nx,), y (ny,) in m; fields: name ->
+    (nx, ny); border: cells at each end in x and y that do not count for the largest values.
+    """
 
     x: np.ndarray
     y: np.ndarray

@@ -44,7 +44,7 @@ MICRO, GIGA = 1e6, 1e-9
 PARTS = {"loading": "-o", "unloading": "--s", "constant force": ":^", "unloaded in one step": "s"}
 """Parts of a history -> their line and marker."""
 NOTHING = 1e-9
-"""Of the approach: a smaller gap everywhere is rounding, as opposite a punch; so of friction."""
+"""Over the approach, or the largest friction: a gap, or a change of friction, below it is rounding."""
 
 
 def draw_run(folder: Path, *, pdf: bool = False, progress: Progress = lambda *_: None) -> list[Path]:

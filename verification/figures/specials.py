@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Figures of their own kind, each by one function."""
+"""Figures of their own kind: agreement, bars with bounds, energies over a path, what a film changes."""
 
 from __future__ import annotations
 

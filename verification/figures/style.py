@@ -183,7 +183,9 @@ def save(
     long: int = LONG,
     small: bool = True,
 ) -> list[Path]:
-    """Write stem.png and stem.csv (packed beyond `long` bytes), or stem.pdf; equal bytes. The paths."""
+    """Write stem.png and, if `data`, stem.csv (stem.csv.gz beyond `long` bytes), or stem.pdf alone, and
+    return their paths; equal drawings give equal bytes.
+    """
     paths = [stem.with_name(f"{stem.name}.{'pdf' if pdf else 'png'}")]
     write_atomically(paths[0], encoded(drawing.figure, pdf=pdf, small=small))
     if data and not pdf:

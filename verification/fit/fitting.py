@@ -2,9 +2,9 @@
 """Least squares of measured tests by a model of the contact, with what they leave open.
 
 Of a test the model gives depths d(theta) at the forces, or the places, of its points. The start is sought on
-a grid with half the cells and load steps (c), by derivatives there and Broyden's updates; the best theta then
-on that of the scene (f), with derivatives of its own: those of (c) differ where little is determined, and an
-estimate by them scatters more than they say. What is compared with the points is
+a grid with half the cells and load steps (index c), by derivatives there and Broyden's updates; the best
+theta then on that of the scene (index f), with derivatives of its own: those of d_c differ where little is
+determined, and an estimate by them scatters more than they say. What is compared with the points is
 
     d_f(theta) + zero + compliance F.                                                                  (a)
 
@@ -19,9 +19,9 @@ N that of the numerical error over the points of a branch of a test, e = d_f - d
     N_ij = (e/K)^2 exp(-(pi m (u_i - u_j)/U)^2/2),    e^2 the mean of e_i^2, u = sqrt(x), U its range. (c)
 
 A change by half the grid is the bound of verification/uncertainty/rule.py, K = 2 standard deviations. m is
-how often e_i changes its sign on the branch: that often per U does a Gaussian process with (c) (Rice, Bell
-Syst. Tech. J. 24 (1945) 46, Eq. 3.3-11). The edge of the contact moves over elements, whose number in the
-radius goes with u, and the error of (f) passes zero at other loads than e does.
+how often e_i changes its sign on the branch: a Gaussian process with this covariance does so as often per U
+(Rice, Bell Syst. Tech. J. 24 (1945) 46, Eq. 3.3-11). The edge of the contact moves over elements, whose
+number in the radius goes with u, and the error of d_f passes zero at other loads than e does.
 """
 
 from __future__ import annotations
@@ -193,7 +193,7 @@ def fit(definition: Definition, answers: Answers, *, ahead: bool = True) -> Fitt
 
 @dataclass
 class _Search:
-    """fine: on which grid; sigma: of each test in m."""
+    """The search of a fit. fine: on the grid of the scene; sigma: standard deviation of each test in m."""
 
     definition: Definition
     answers: Answers

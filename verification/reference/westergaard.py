@@ -133,7 +133,7 @@ class DoublyWavyContact(Checked):
 
     @property
     def fitted_share(self) -> float:
-        """In between: Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, by Johnson, Greenwood & Higginson."""
+        """The same in between: fit of Jackson & Streator, Wear 261 (2006) 1337, Eq. 21, to computed ones."""
         m = self.load_ratio
         if m >= 0.8:
             return self.heavy_share

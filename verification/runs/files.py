@@ -238,7 +238,9 @@ def _why(error: Exception) -> str:
 
 
 def check_target(folder: Path, also: Sequence[str] = ()) -> None:
-    """Raise FolderError unless a run may be written to `folder`; also: names that it may hold besides."""
+    """Raise FolderError unless a run may be written to `folder`: absent, empty, or of an older or broken-off
+    run; also: names that it may hold besides the files of a run.
+    """
     try:
         check_place(folder)
         if (folder / SUMMARY).exists():

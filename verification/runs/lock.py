@@ -25,7 +25,9 @@ LOCKS = Path(
 
 @contextmanager
 def locked(folder: str | Path) -> Iterator[None]:
-    """Hold `folder`, made if need be and removed if empty. FolderError, at once, if it is held elsewhere."""
+    """Hold `folder` for the block, made if need be; one that is made here and stays empty is removed again.
+    Raises FolderError, at once, if another block of any process holds it or it cannot be made.
+    """
     folder = Path(folder)
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     descriptor = _held(folder)

@@ -82,7 +82,7 @@ def errors(law: str, poisson: float, ratio: float) -> dict[str, tuple[float, flo
 
 
 def refusal(scene: Scene) -> str:
-    """Why a scene is not solved: key, value and what is allowed; empty where the model holds."""
+    """Why a scene is not solved: key, value, what is allowed; empty in the range, or with beyond_model."""
     if scene.solver.beyond_model or (key := _load_key(scene)) is None:
         return ""
     load = getattr(scene.loading, key)
@@ -407,7 +407,9 @@ def _hardening(plasticity: Plasticity) -> str:
 
 
 def rms_slope(scene: Scene) -> float:
-    """rms slope of the patch, both surfaces, before a solve; 0 where only the digest is at hand."""
+    """rms slope of the patch before a solve, of both surfaces together; where the counter-body moves, of the
+    body alone. A surface of which only the digest of its file is at hand counts as smooth.
+    """
     (nx, ny), extent = scene.patch
     hx, hy = extent[0] / nx, extent[1] / ny
     x, y = ((np.arange(n) - (n - 1) / 2) * h for n, h in ((nx, hx), (ny, hy)))

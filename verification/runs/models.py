@@ -28,7 +28,7 @@ class ModelError(ValueError):
 
 
 def check(scene: Scene, model: str) -> None:
-    """Raise ModelError, which names the key, unless `model` can represent the scene within its range."""
+    """Raise ModelError, naming the key, if `model` cannot represent the scene or it is beyond the range."""
     if reason := _refusal(scene, model):
         raise ModelError(f"model {model}: {reason}")
     from verification.runs.model_range import refusal  # noqa: PLC0415 - loads numpy

@@ -36,7 +36,7 @@ def collect(inputs: Mapping[str, bytes] | None = None, seeds: Sequence[int] = ()
 
 
 def hashes(inputs: Mapping[str, bytes]) -> dict[str, str]:
-    """Name of each input as text, in whatever language of the machine -> SHA-256 of its content."""
+    """Name of each input as text (UTF-8, whatever the locale) -> SHA-256 of its content."""
     return {
         name.encode(errors="surrogateescape").decode(errors="replace"): hashlib.sha256(content).hexdigest()
         for name, content in inputs.items()

@@ -42,7 +42,9 @@ _WRITING = threading.Lock()
 
 @dataclass(frozen=True)
 class Lookup:
-    """What a lookup found. result: or None; note: why it is not used ("stale: ..."); created, commit."""
+    """What a lookup found. result: None if nothing usable; note: why an entry is not used ("stale: ..."), or
+    empty; created (UTC, ISO 8601) and commit of what was found.
+    """
 
     result: Any = None
     note: str = ""
@@ -194,7 +196,7 @@ class Store:
 
 
 def default_store() -> Store | None:
-    """Of the user: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME or ~/.cache/samfem."""
+    """The user's store: $SAMFEM_STORE (empty: none), else samfem in $XDG_CACHE_HOME or ~/.cache."""
     named = os.environ.get(FOLDER)
     if named is not None:
         return Store(Path(named)) if named else None
@@ -228,7 +230,7 @@ def solve_or_reuse(
     fresh: bool = False,
     **how,
 ) -> tuple[Result, Reuse]:
-    """The result of a scene from the store, or solved and kept. fresh: solve anyway; how: to models.solve."""
+    """The result of a scene, stored or else solved and kept. fresh: solve anyway; how: for `models.solve`."""
     found = Lookup() if store is None or fresh else store.lookup(scene, model)
     if found.result is not None:
         return found.result, Reuse(True, found.created, found.commit)

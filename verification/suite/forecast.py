@@ -44,7 +44,7 @@ def costs_at(level: str) -> dict[str, Cost]:
 
 @dataclass
 class Forecast:
-    """Cases one after the other. needs: by name, in order; took: seconds; began: when one did."""
+    """Cases run in turn. needs: of each, in order; took: s of those ended; began: when this one did."""
 
     needs: Mapping[str, Cost]
     stored: int = 0

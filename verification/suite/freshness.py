@@ -33,7 +33,7 @@ def stale(results: Mapping) -> dict[str, str]:
 
 
 def older(results: Mapping) -> dict[str, str]:
-    """Of these only cases that came to their end, shown of other code; none of a comparison."""
+    """The cases of `stale` that came to their end: what is shown is of other code. A comparison has none."""
     if results.get("kind") == "comparison":
         return {}
     ended = {name for name, case in ran_in(results).items() if not case["failure"]}
@@ -106,7 +106,9 @@ class Earlier:
 
 
 def earlier(results: Record, known: Iterable[str], wanted: Iterable[str]) -> Earlier:
-    """What stays of a report: known cases not wanted, and wanted ones of this code, judged anew."""
+    """What stays of a report: the cases that are known and not wanted, and of those wanted what came to its
+    end with this code, judged anew where only its gates have changed.
+    """
     again, cases = set(wanted), dict[str, Record]()
     gates: list[Record] = []
     for name, case in ran_in(results).items():

@@ -53,7 +53,7 @@ SHARE = 0.02
 
 @dataclass(frozen=True)
 class RanCase:
-    """A case that was run or reused. failure: why it broke off; source: where it is from, or why not."""
+    """A case, run or reused. failure: why it broke off; source: where it is from, or why not reused."""
 
     context: Context
     outcome: Outcome
@@ -186,7 +186,7 @@ def begin(out: Path) -> Path:
 
 
 def _take_over(out: Path) -> None:
-    """Put the whole report in UNFINISHED into its place, results.json last; goes on if broken off."""
+    """Put the report in UNFINISHED into its place, results.json last; broken off, a next call goes on."""
     if (out / RESULTS).exists():
         remove_pages(out)
         for name in ("runs", "figures"):
@@ -333,7 +333,9 @@ def _solves(ran: Sequence[RanCase]) -> dict[str, int]:
 
 
 def attempt(case: Case, context: Context) -> tuple[Outcome, str]:
-    """The outcome and, when the case broke off, why: any error but a full disk, with what was found."""
+    """The outcome and, when the case broke off, why. Any error of a case but a full disk is reported with it;
+    what was found before a figure failed counts.
+    """
     try:
         return case.run(context), ""
     except NotDrawnError as lost:

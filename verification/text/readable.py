@@ -15,7 +15,7 @@ WORKING_UNITS = {
     "m3": {"mm^3": 1e-9, "um^3": 1e-18},
     "N": {"N": 1.0},
 }
-"""SI unit at the end of a name -> units for a person and their SI value; the first with a tenth counts."""
+"""SI unit that ends a name -> units for a person, in SI; the first of which a value is at least a tenth."""
 
 
 def with_prefix(value: float, unit: str, digits: int = 3) -> str:
@@ -30,7 +30,7 @@ def with_prefix(value: float, unit: str, digits: int = 3) -> str:
 
 
 def in_working_unit(name: str, value: float, digits: int = 6, beside: float | None = None) -> tuple[str, str]:
-    """A quantity in a working unit: ("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa"). beside: has the unit."""
+    """("p_max_Pa", 2.1e9) is ("p_max", "2.1 GPa"), in a working unit. beside: the value that chooses it."""
     words, _, si = name.rpartition("_")
     units = WORKING_UNITS.get(si)
     if units is None:

@@ -37,7 +37,7 @@ def bound(values: Sequence[float], sizes: Sequence[float], order: float, factor:
 
 
 def of_edge(value: float, cells: float, share: float = EDGE) -> float:
-    """What the edge of a contact leaves of a value, in its unit; cells: in the radius; share: with one."""
+    """Error of a value as the edge lies between cells; cells: in the contact radius; share: with one cell."""
     return share * abs(value) / cells**2
 
 

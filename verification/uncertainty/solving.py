@@ -131,7 +131,9 @@ class Member:
 
 @dataclass(frozen=True)
 class Family:
-    """Scenes of an uncertainty. cells: finest first; steps: on the coarsest; box: on the last; or empty."""
+    """The scenes that an uncertainty needs. cells: finest first; steps: on the coarsest of them, beginning
+    with it; box: beginning with the last of steps, or of cells; empty where history or box decide nothing.
+    """
 
     cells: tuple[Member, ...]
     steps: tuple[Member, ...] = ()

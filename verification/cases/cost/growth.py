@@ -14,6 +14,8 @@ from verification.figures.lines import Curve, curves
 from verification.reference.convergence import Power, fit_power
 from verification.rows import CaseFile
 
+__all__ = ["exponents"]  # named by the file of the case
+
 ERROR = 1e-4  # of the stress/mu of a unit strain by sweeps
 BOXES = {
     "dense": ((16, 16, 8, 0.0), (32, 32, 16, 0.0), (64, 64, 32, 0.0)),

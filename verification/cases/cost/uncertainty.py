@@ -42,7 +42,9 @@ Draw = np.random.Generator
 
 
 def textbook(entry: Mapping[str, Any]) -> float:
-    """The uncertainty by the observed order and the factor 1.25 (Roache 1998), else the second and 3."""
+    """The uncertainty with, for the cells, the observed order and the factor 1.25 (Roache 1998), or order 2
+    and the factor 3 where none is observed; load steps and box count as in the program.
+    """
     values, sizes = entry["values"], [1.0 / count for count in entry["cells"]]
     seen = order_seen(values, sizes)
     order, factor = (2.0, 3.0) if seen is None else (seen, 1.25)
@@ -94,7 +96,9 @@ def solved(context: Context, scene: Scene, model: str) -> Result:
 
 
 def finer(context: Context, scene: Scene, model: str, names: Sequence[str]) -> Truth:
-    """From finer cells and more load steps, extrapolated by formal orders. doubt: that, of steps a half."""
+    """The quantities from finer cells or elements and more load steps, extrapolated in both by their formal
+    orders, and their doubt: what the extrapolation adds, of load steps a half.
+    """
     few, many = (with_loading(scene, steps=scene.loading.steps * times) for times in MORE_STEPS)
 
     def of(other: Scene, rank: int) -> Mapping[str, Any]:

@@ -34,6 +34,8 @@ from verification.figures.style import Drawing
 from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
 
+__all__ = ["beside_elements", "to_one_percent"]  # named by the file of the case
+
 STUDIED = {problem.name: problem for problem in (*PROBLEMS, ELLIPSOID)}
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""

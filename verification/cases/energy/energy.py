@@ -42,8 +42,8 @@ SOLVED = {
     ),
 }
 """Case -> contacts, models, and whether with each number of steps on the coarsest grid, or the fewest."""
-# Of a pressure in place, over the yield stress: 1.5 times Melan's limit for Prager's back-stress. Its modulus
-# in Pa: with a tenth of it the mean strain settles for longer.
+# The Hertz pressure that is applied and taken away over the yield stress (Pa), 1.5 times Melan's limit for
+# Prager's back-stress, whose modulus is in Pa: with a tenth of it the mean strain settles for longer.
 ALTERNATING, MODULUS, YIELD = 4.84, 150e9, 1e9
 IN_RADIUS = {SAM: 5, FEM: 3}  # cells or elements in the radius of that pressure
 
@@ -125,12 +125,12 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
 
 
 def order_in_cells(rows: DataFrame, column: str) -> float:
-    """Of an error in the size of the cells."""
+    """The order in which an error, a column of rows, falls with the size of the cells."""
     return fit_power(1 / rows["size"], rows[column]).exponent
 
 
 def order_in_steps(rows: DataFrame, column: str) -> float:
-    """Of an error in the load step."""
+    """The order in which an error, a column of rows, falls with the load step."""
     return fit_power(1 / rows["steps"], rows[column]).exponent
 
 

@@ -55,7 +55,7 @@ def at_centre(law: FilmLaw, pressure: np.ndarray) -> FilmState:
 
 
 def path_errors() -> tuple[np.ndarray, float]:
-    """Error after the winding path in each of SUBSTEPS a part, over its largest component; extrapolated."""
+    """Errors of the strain after WINDING with SUBSTEPS a part, over its largest component; extrapolated."""
     law, right, found = law_of(FRICTIONS[1]), Film(*FILM).along(WINDING), []
     for substeps in SUBSTEPS:
         state = FilmState.fresh((1, 1))

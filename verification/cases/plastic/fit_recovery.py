@@ -43,8 +43,8 @@ KEPT, GRIDS = "fit_recovery.csv", {"coarse": (SAM, False), "fine": (SAM, True), 
 
 @dataclass(frozen=True)
 class Law:
-    """unknown: key -> middle and factor to the bounds; tests: (radius in m, force in N); grid: of SAM;
-    points: numbers in the sequence of those in the table.
+    """A hardening law whose numbers are to be found again. unknown: key -> middle and factor to the bounds;
+    tests: (radius in m, force in N); grid: of SAM; points: which of the sequence stand in the table.
     """
 
     plasticity: Mapping[str, Any] | None

@@ -83,7 +83,7 @@ def drawn(picture: Picture) -> Figure:
     ends[2] /= picture.exaggeration
     with style():
         figure = new_figure(6.2, 4.4, "none")
-        panel = figure.add_axes((-0.03, 0.06, 0.78, 0.86), projection="3d", proj_type="ortho")
+        panel = figure.add_axes((-0.03, 0.1, 0.78, 0.86), projection="3d", proj_type="ortho")
         panel.set(xlim=ends[0], ylim=ends[1], zlim=ends[2], facecolor="none")
         (unit, name), upright = length_unit(np.abs(ends[2]).max()), np.ptp(picture.box[2])
         panel.set(xlabel="$x$ [$\\mu$m]", ylabel="$y$ [$\\mu$m]", zlabel=f"$z$ [{name}]")
