@@ -156,11 +156,8 @@ def test_stresses_beside_a_large_box_are_those_of_its_coefficients(monkeypatch):
 
 def test_stresses_beside_a_box_are_swept_only_where_the_box_is(monkeypatch):
     """Below a sphere x and y are exchanged, and half of the matrices are stored."""
-    sphere = scene(
-        body={"plasticity": SWIFT},
-        grid={"cells": (25, 25), "extent": (30e-6, 30e-6)},
-        loading={"steps": 1, "unload": False, "force": 0.3},
-    )
+    grid = {"cells": (25, 25), "extent": (30e-6, 30e-6)}
+    sphere = scene(body={"plasticity": SWIFT}, grid=grid, loading={"force": 0.3, "steps": 1})
     found = sam.solve(sphere)
     monkeypatch.setattr("sam.plasticity.box.MOST_BYTES", 1.5 * found.discretisation["operator_bytes"])
     monkeypatch.setattr("sam.plasticity.measure._swept_stress", None)

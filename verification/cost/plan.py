@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from math import prod, sqrt
 from typing import Any
@@ -31,7 +32,6 @@ from verification.uncertainty.solving import NoFamilyError, family, too_coarse
 UNCERTAINTY = "uncertainty"
 LONGEST = 86400.0  # predicted processor seconds that a command begins unasked
 NOTE = "memory and time are estimates from the numbers of cells, not measurements"
-FEWEST = 16  # cells each way of a grid that is named as one that would fit
 COARSEST = 4.0  # cells in the contact radius: below it a grid is called coarse
 BRIEF = {
     "surface heights": "roughness",
@@ -351,17 +351,14 @@ def _fitting(scene: Scene, model: str, available: float) -> str:
     """What would fit in SAM, half as many cells each way or half of those, and its memory."""
     from sam import choose_grid
 
-    grid = choose_grid(scene) if model == models.SAM else None
-    cells = (0, 0) if grid is None else (grid.nx // 2, grid.ny // 2)
-    while min(cells) >= FEWEST:
+    grid = choose_grid(scene)
+    for share in (2, 4, 8, 16) if model == models.SAM else ():
+        cells = grid.nx // share, max(grid.ny // share, 1)
         fewer = (scene.grid or Grid()).model_copy(update={"cells": cells})
-        try:
+        with suppress(ValueError):  # of heights that cannot be had so coarse
             needed = estimates.estimate(scene.model_copy(update={"grid": fewer}), model).memory_bytes
-        except ValueError:  # heights that cannot be had so coarse
-            break
-        if needed <= available:
-            return f"; grid.cells = {list(cells)} would take {with_prefix(needed, 'B')}"
-        cells = cells[0] // 2, cells[1] // 2
+            if needed <= available:
+                return f"; grid.cells = {list(cells)} would take {with_prefix(needed, 'B')}"
     return ""
 
 
