@@ -17,7 +17,7 @@ from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.runs.provenance import installed
 
 ROOT = Path(__file__).resolve().parents[2]
-SUFFIXES = (".py", ".json", ".toml", ".csv")
+SUFFIXES = (".py", ".json", ".toml", ".csv", ".gz")
 CACHE = "__pycache__"
 _OF_RESULTS = (
     "verification/runs/models.py",

@@ -61,7 +61,7 @@ def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve 
         problem = STUDIED[name]
         scene = problem.scene(context.scene(problem.file))
         context.progress(f"{context.case}, {name}", 0, 1)
-        yield from with_errors(problem, scene, solved(problem, scene, solve or measured.solve_alone))
+        yield from with_errors(problem, scene, solved(problem, scene, solve or measured.solve_forked))
 
 
 def solved(problem: Problem, scene: Scene, solve: Solve) -> list[dict[str, Any]]:
