@@ -25,7 +25,7 @@ from verification.runs.code_version import OF_CASES
 from verification.runs.threads import EVERY_LIBRARY
 
 ROOT = Path(__file__).resolve().parents[3]
-PAIRS, LOSS = 2, 1.2
+PAIRS, LOSS = 5, 1.2
 FEW, SHARE = 2, 0.05  # by how much a count may grow
 ROUNDING = 1e-9  # of the largest quantity in a unit: what is less is no result
 
