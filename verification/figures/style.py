@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One look for all figures, and how they are written."""
 
-from __future__ import annotations
-
 import gzip
 import io
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Elastic Hertz and the rough patch: what is run, and the errors."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ A commit would not do: it changes with every word of documentation, and not with
 yet.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache

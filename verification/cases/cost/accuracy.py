@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Whether an accuracy that a scene asks for is reached, and never missed unsaid, in ten scenes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """How time and memory grow with cells, cycles and unknowns, and how well `samfem plan` predicts both."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Speed, memory and counts of this code over those of the code that was published last, in turns."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -4,8 +4,6 @@ solve is made in a process of its own, the methods of a problem in turn, with th
 beside them; errors are against references that know their own uncertainty.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -3,8 +3,6 @@
 the studies that judge its statements. Where a study did not run, that is said.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
