@@ -23,8 +23,6 @@ the half-space, so that work also leaves the mesh there: it is stored in what li
 elastic. In space a half is modelled where y = 0 is a plane of symmetry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -230,7 +228,12 @@ def _plastic_parts(scene: Scene, grid: CellGrid, states: list[Committed]):
             both[1, *window.slices] = _moved_along(model, mean.strain, extent)
         if grid.periodic:
             free = scene.loading.lateral == "free"
-            both += _mean_moved(scene, mean.strain, np.diff(model.faces(extent)), free)[:, None, None]
+            thick = np.diff(model.faces(extent))
+            # u_z, u_x of the mean plane by the mean plastic strain: the solver gives displacements about that
+            # plane, but the mean of the tractions does work on it
+            e, nu = mean.strain.mean(axis=(2, 3)), scene.body.poisson
+            along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
+            both += (-np.array([along_z @ thick, 2 * e[4] @ thick]))[:, None, None]
         residuals.append(both)
         pressed = problem.stress(state.pressure[window.slices] / problem.unit, state.load)
         stress = problem.operator.whole(pressed) + residual.stress
@@ -263,15 +266,6 @@ def _moved_along(model: Model, strain: np.ndarray, extent: Extent) -> np.ndarray
     if model.plan.period is not None:
         return model.plan.period.moved(strain, cells, 1)
     return surface_displacement(Strained(strain, window, cells), window, counters=Counters(), component=1)
-
-
-def _mean_moved(scene: Scene, strain: np.ndarray, thick: np.ndarray, free: bool) -> np.ndarray:
-    """(u_z, u_x) in m of the mean plane of a periodic patch by its plastic strain, (6, layers, nx, ny): the
-    solver gives displacements about that plane, but the mean of the tractions does work on it.
-    """
-    e, nu = strain.mean(axis=(2, 3)), scene.body.poisson
-    along_z = e[2] + (0.0 if free else nu / (1 - nu)) * (e[0] + e[1])
-    return -np.array([along_z @ thick, 2 * e[4] @ thick])
 
 
 def _work(stresses, strains) -> np.ndarray:

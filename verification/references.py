@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The independent answers that a case may name, each a function of the scene by `verification.reference`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace

@@ -9,8 +9,6 @@ of Jansen, Comput. Phys. Commun. 117 (1999) 35. Uniform: points of a Sobol seque
 correlation of ranks.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -22,7 +22,7 @@ from scipy.interpolate import RegularGridInterpolator, interp1d
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.contact import Equilibrium, without_contact
 from fem_reference.common.elasticity import on_grid
-from fem_reference.common.loading import Progressed, follow
+from fem_reference.common.loading import Progressed, Step, follow
 from fem_reference.common.plasticity import History
 from fem_reference.spatial.planner import plan
 from fem_reference.spatial.recovery import largest_peeq, stresses
@@ -69,34 +69,39 @@ def limits_of(scene: Scene) -> Limits:
     return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness, falls)
 
 
-def worn_cycles(scene: Scene, depths: Sequence[Array] | None = None) -> list[WornCycle]:
-    """The cycles of a rough scene with [wear], solved with removal at the end of each of them.
+def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCycle]]:
+    """The cycles of a rough scene with [wear], solved with removal at the end of each of them, for each of
+    some ways to remove; the load of the first cycle, which they have in common, is solved once.
 
     scene: a rough body that yields below a rigid counter-body; of its [wear] only the strain limits and the
-    roof are read, nothing is smoothed. depths: (nx, ny) in m to remove from the cells at the end of each
-    cycle, in place of the model's own. Raises UnsupportedScene for what else of the scene finite elements
+    roof are read, nothing is smoothed. ways: depths (nx, ny) in m to remove from the cells at the end of each
+    cycle, or None for the model's own. Raises UnsupportedScene for what else of the scene finite elements
     cannot represent, ValueError where a cycle does not converge, or all that the mesh has below a node is
     above the limit.
     """
     limits = limits_of(scene)
-    model = build(plan(scene.model_copy(update={"wear": None})))
-    state, worn, cycles = model.virgin(), np.zeros(model.heights.shape), []
-    for cycle in range(1, scene.loading.cycles + 1):
-        targets = [target for target in model.plan.schedule.targets if target.cycle == cycle]
-        steps = follow(model, Progressed(state, targets))
-        state = steps[-1].state
-        if not state.converged or state.history is None:
-            raise ValueError(f"cycle {cycle}: {state.ending or 'not converged'}")
-        peak = [step.state for step in steps if not step.unloads][-1]
-        depth = own_depth(model, state, limits) if depths is None else depths[cycle - 1]
-        worn = worn + depth
-        fields = stresses(model, peak)
-        tables = {"surface": surface_table("peak", model, peak), "plane": plane_table("peak", fields)}
-        model, state = lowered(model, state, depth)
-        uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
-        moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
-        cycles.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
-    return cycles
+    body = build(plan(scene.model_copy(update={"wear": None})))
+    first: list[Step] = []
+    found = []
+    for depths in ways:
+        model, state, worn, cycles = body, body.virgin(), np.zeros(body.heights.shape), []
+        for cycle in range(1, scene.loading.cycles + 1):
+            targets = [target for target in model.plan.schedule.targets if target.cycle == cycle]
+            steps = first if first and cycle == 1 else follow(model, Progressed(state, targets))
+            first, state = first or steps, steps[-1].state
+            if not state.converged or state.history is None:
+                raise ValueError(f"cycle {cycle}: {state.ending or 'not converged'}")
+            peak = [step.state for step in steps if not step.unloads][-1]
+            depth = own_depth(model, state, limits) if depths is None else depths[cycle - 1]
+            worn = worn + depth
+            fields = stresses(model, peak)
+            tables = {"surface": surface_table("peak", model, peak), "plane": plane_table("peak", fields)}
+            model, state = lowered(model, state, depth)
+            uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
+            moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
+            cycles.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
+        found.append(cycles)
+    return found
 
 
 def columns_of_points(model: RoughModel) -> Integers:

@@ -235,8 +235,8 @@ class ExpectedBox:
 
     @property
     def set_up(self) -> int:
-        """Coefficients between these pairs in the lags of the box, from which those are transformed."""
-        return 36 * self.pairs * (self.nx + 1) * (self.ny + 1)
+        """Coefficients between these pairs in the lags of the box, or in half, to be transformed."""
+        return 36 * self.pairs * (self.nx + 1) * (self.ny + 1) // (1 + self.exchange)
 
 
 @dataclass(frozen=True)

@@ -127,9 +127,10 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
-    expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance)
-    large = expected.large and model.asked_operator != "dense"
-    if large or model.plan.period is not None:
+    exchange = problem_of(model, record).operator.exchange
+    expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance, exchange)
+    large = (expected.large and model.asked_operator != "dense") or model.plan.period is not None
+    if large and covered < len(grid.depths):
         return _swept_stress(model, record)
     strained, mu = _strained(model, record), model.plan.pair.body.shear
     below = residual_stress(strained, grid.depths[covered:], rows, mu=mu)

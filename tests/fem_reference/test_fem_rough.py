@@ -293,13 +293,15 @@ def test_depths_of_a_layer_end_where_it_does():
 
 def test_without_removal_the_cycles_are_those_of_a_solve():
     none = np.zeros((FEW, FEW))
-    cycles, plain = worn_cycles(wearing(), [none, none]), spatial.solve(wearing(False))
+    (cycles, own), plain = worn_cycles(wearing(), [none, none], None), spatial.solve(wearing(False))
     assert np.array_equal(cycles[-1].tables["surface"]["p_Pa"], column(plain, "surface", "p_Pa"))
     assert cycles[-1].peeq_max == plain.quantities["peeq_max"] and not cycles[-1].worn.any()
+    assert np.array_equal(own[0].tables["surface"]["p_Pa"], cycles[0].tables["surface"]["p_Pa"])
+    assert own[-1].peeq_max == worn_cycles(wearing(), None)[0][-1].peeq_max
 
 
 def test_what_is_removed_no_longer_bears():
-    first, last = worn_cycles(wearing())
+    ((first, last),) = worn_cycles(wearing(), None)
     assert first.worn.max() == THICK and (last.worn >= first.worn).all()
     p, q = (np.reshape(cycle.tables["surface"]["p_Pa"], (FEW, FEW)) for cycle in (first, last))
     deepest = np.unravel_index(first.worn.argmax(), first.worn.shape)

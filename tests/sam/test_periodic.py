@@ -27,23 +27,6 @@ def wave(n: int, k: float = 1.0) -> np.ndarray:
     return np.cos(2 * np.pi * k * (np.arange(n) + 0.5) / n)[:, None]
 
 
-@pytest.mark.parametrize(("share", "error"), [(0.1, 8e-4), (0.5, 6e-5), (0.9, 4e-5)])
-def test_westergaard_s_wavy_surface(share, error):
-    """Johnson (1985), Eq. 13.7; E* = 1, a wave of 1 long, pressed by `mean`."""
-    errors, s = [], np.sin(np.pi * share / 2)
-    for n in (65, 260):
-        x = np.abs((np.arange(n) + 0.5) / n - 0.5)
-        mean, gap = np.pi * 1e-3 * s**2, np.repeat(1e-3 * wave(n), 2, axis=1)
-        exact = 2 * mean * np.cos(np.pi * x) / s**2 * np.sqrt(np.maximum(s**2 - np.sin(np.pi * x) ** 2, 0))
-        cell, search = (1 / n, 1 / n), Search(1e-9)
-        contact = solve_contact(gap, cell, 1.0, 2 * mean / n, bodies=HELD, search=search)
-        near, pressure = x < share / 4, contact.pressure[:, 0]
-        errors.append(np.abs(pressure[near] / exact[near] - 1).max())
-        assert contact.converged and abs(contact.displacement.mean()) < 1e-12
-        assert abs(np.count_nonzero(pressure) - np.count_nonzero(exact)) <= 2
-    assert errors[1] < min(error, errors[0] / 6)
-
-
 @pytest.mark.parametrize("z", [None, 0.0, 0.1, 0.7])
 @pytest.mark.parametrize("load", [3, 1])
 def test_coefficients_are_sums_over_images(z, load):

@@ -5,7 +5,6 @@ import hashlib
 import io
 import json
 import math
-import os
 import signal
 import subprocess
 import sys
@@ -18,16 +17,14 @@ import pytest
 from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 
 import fem_reference.axisymmetric.planner
-import fem_reference.spatial.planner
 import sam
 from sam.half_space import circular_contact_radius
 from sam.planner import bodies, make, stages
 from sam.scene import LeftOut
 from samfem.cli import main
-from verification.cost.plan import plan
 from verification.runs import models
 from verification.runs.files import read_run
-from verification.text.console import Progress, digits, followed, print_anything, print_table
+from verification.text.console import Progress, digits, print_anything, print_table
 
 
 @pytest.fixture
@@ -111,23 +108,6 @@ def test_a_file_of_another_kind_is_named_with_the_command_that_takes_it(folder, 
     (folder / "study.toml").write_text('scene = "sphere.toml"\n[vary]\n"body.poisson" = { list = [0.2] }\n')
     (folder / "case.toml").write_text('scene = "sphere.toml"\n[rows.bound]\n')
     assert samfem(command, file, code=2).err == f"samfem: error: {file}: this is a {words} {file}\n"
-
-
-ELLIPSOID = '"ellipsoid"\nradius_x = "1 mm"\nradius_y = "2 mm"'
-BEYOND = {
-    "body.poisson = 0.5": ("poisson = 0.3", "poisson = 0.5"),
-    "counterbody.shape": ('"sphere"\nradius = "105 um"', ELLIPSOID),
-}
-
-
-@pytest.mark.parametrize("key", BEYOND)
-def test_what_the_axisymmetric_model_cannot_represent_is_refused_by_name(folder, refused, samfem, key):
-    (folder / "scene.toml").write_text(scene_text(BEYOND[key]))
-    for command in ("solve", "compare"):
-        assert key in refused(command, "scene.toml", "--model", "fem-axisymmetric")
-    shown = samfem("plan", "scene.toml", "--verbose").out
-    assert f"fem-axisymmetric cannot ({key.split()[0]}" in shown
-    assert f"fem-axisymmetric: cannot be used: model fem-axisymmetric: {key}" in shown
 
 
 def test_help_and_version(samfem):
@@ -250,11 +230,6 @@ def calls_of(functions, act) -> dict[str, int]:
     return {name: calls[name] for name in names.values()}
 
 
-def test_plan_makes_the_plan_of_each_model_once():
-    planners = (make.plan, fem_reference.axisymmetric.planner.plan, fem_reference.spatial.planner.plan)
-    assert set(calls_of(planners, lambda: plan(parsed(add=GRID))).values()) == {1}
-
-
 SMALL = "[grid]\ncells = [9, 9]\n[solver]\ntolerance = 1e-3\n"
 ONCE = (make.check_bodies, make.plan_of, make.schedule_of, stages.stages_of, bodies._by_hertz)
 
@@ -271,7 +246,6 @@ def test_a_scene_is_checked_planned_and_estimated_once(folder, add):
 
 
 PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
-GRID = '[grid]\ncells = [65, 65]\nlayers = 20\ndepth = "10 um"\n'
 
 
 def test_a_file_that_the_scene_names_is_hashed_with_it(folder, samfem):
@@ -302,29 +276,6 @@ def test_progress_is_quiet_at_first_and_then_says_where_it_is(capsys, monkeypatc
     assert capsys.readouterr().err == said
 
 
-def test_a_notebook_shows_one_bar_that_moves(monkeypatch, capsys):
-    shown = []
-    handle = SimpleNamespace(update=lambda data, raw: shown.append(data["text/plain"]))
-
-    def display(data, raw, **_):
-        handle.update(data, raw)
-        return handle
-
-    shell = SimpleNamespace(kernel=object())
-    notebook = SimpleNamespace(get_ipython=lambda: shell, display=SimpleNamespace(display=display))
-    monkeypatch.setitem(sys.modules, "IPython", notebook)
-    clock = SimpleNamespace(now=0.0)
-    monkeypatch.setattr(time, "monotonic", lambda: clock.now)
-    with followed(None) as progress:
-        for clock.now, done in ((0.5, 1), (1.5, 2), (1.6, 3), (1.65, 4)):
-            progress("contact", done, 4)
-    assert shown == ["contact: 2 of 4, about 2 s left", "contact: 4 of 4"] and not capsys.readouterr().err
-    shell.kernel = None
-    with followed(None) as progress:
-        progress("contact", 1, 4)
-    assert len(shown) == 2 and not isinstance(progress, Progress)
-
-
 def test_tables_are_aligned_and_keep_brackets(capsys):
     print_table(("quantity", "sam"), [("[red]x", digits(1 / 3)), ("y", digits(None))])
     assert capsys.readouterr().out == "quantity  sam\n[red]x    0.333333\ny         -\n"
@@ -346,21 +297,3 @@ def test_every_text_can_be_printed_in_every_language(encoding, errors, text, wri
     print_anything(stream)
     stream.write(text)
     assert raw.getvalue() == written
-
-
-def test_a_scene_whose_name_and_title_are_not_ascii_is_solved_in_the_c_locale(folder):
-    name = os.fsdecode("n\u00f6".encode())
-    text = (folder / "coarse.toml").read_text(encoding="utf-8").replace("title = ", 'title = "\u00b5" # ')
-    (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    language = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-    program = "import sys; from samfem.cli import main; from verification.text import console\n"
-    program += "console.QUIET_S = 1e9  # however slow the machine is\n"
-    program += (
-        "print([main([*words.split(), sys.argv[1]]) for words in ('plan --verbose', 'solve --out out')])"
-    )
-    command = [sys.executable, "-c", program, f"{name}.toml"]
-    done = subprocess.run(command, capture_output=True, env=os.environ | language, check=True)
-    # of the solve: by how much the model is off, and nothing else
-    assert [b"small strains" in line for line in done.stderr.splitlines()] == [True], done.stderr
-    assert done.stdout.endswith(b"[0, 0]\n") and b"?" in done.stdout
-    assert set(read_run(folder / "out").summary["provenance"]["input_sha256"]) == {"n\u00f6.toml"}

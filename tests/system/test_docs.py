@@ -37,7 +37,6 @@ PLACEHOLDER = "NAME"
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 PATH_OF_SOURCE = re.compile(r"(samfem|sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
-SYMBOLS_IN_FILE = re.compile(r"((?:`[\w.]+`(?:, | and ))*`[\w.]+`) in `([\w/]+\.py)`")
 every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 
 
@@ -137,13 +136,6 @@ def test_commands_targets_modules_and_paths_are_right(page):
 
 def test_every_command_is_documented():
     assert {words[0] for text in PAGES.values() for words in commands(text)} == set(COMMANDS)
-
-
-def test_every_symbol_stands_in_the_file_that_the_architecture_names():
-    found = SYMBOLS_IN_FILE.findall(PAGES[ARCHITECTURE])
-    places = [(symbol, path) for symbols, path in found for symbol in CODE.findall(symbols)]
-    assert len(places) >= 10
-    assert [place for place in places if not defines(place[1], place[0].split(".")[-1])] == []
 
 
 def defines(path: str, name: str) -> bool:

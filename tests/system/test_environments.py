@@ -3,12 +3,8 @@
 goes on.
 """
 
-import os
-import sys
-
 import pytest
-import run_environments
-from run_environments import NotHereError, environments, main, probe
+from run_environments import environments, main
 
 PLAIN = {"numpy": ["Haswell"], "scipy": ["Haswell"], "threads": [1], "features": ["AVX2"], "cores": 2}
 SUITE = """import os, pytest
@@ -31,22 +27,6 @@ def test_a_failure_in_one_environment_is_told_and_does_not_stop_the_next(tmp_pat
     assert main(["dumb", *words, "-k", "nonesuch"]) == 1  # no tests
 
 
-def test_an_unknown_environment_is_wrong_input(capsys):
-    with pytest.raises(SystemExit) as stop:
-        main(["nonesuch"])
-    assert stop.value.code == 2 and "no such environment: nonesuch" in capsys.readouterr().err
-
-
-def test_a_kernel_that_the_processor_cannot_run_is_not_run(monkeypatch, tmp_path):
-    """As SkylakeX where there is no AVX-512: the probe ends by a signal."""
-    monkeypatch.setattr(run_environments, "PROBE", "import os, signal; os.kill(os.getpid(), signal.SIGILL)")
-    dumb, words = environments()["dumb"], "SIGILL: this processor cannot run the kernel"
-    with pytest.raises(NotHereError, match=words):
-        probe(dumb, run_environments.ROOT, tmp_path)
-    row, failed = run_environments.run("dumb", dumb, PLAIN, (), tmp_path)
-    assert row[-1].startswith("not run: ") and words in row[-1] and not failed
-
-
 @pytest.mark.parametrize(
     ("taken", "runs"),
     [
@@ -61,26 +41,3 @@ def test_a_kernel_that_the_processor_cannot_run_is_not_run(monkeypatch, tmp_path
 def test_a_kernel_counts_if_both_libraries_took_one_of_its_own(taken, runs):
     found = PLAIN | {"numpy": taken[:1], "scipy": taken[1:]}
     assert environments()["openblas-prescott"].holds(found, PLAIN) is runs
-
-
-@pytest.mark.parametrize("name", ["threads-2", "numpy-baseline", "ascii", "time-zone", "terminal"])
-def test_the_probe_finds_what_the_environment_changes(name, tmp_path):
-    """Of those that any user can have on any machine; numpy has no features above the baseline on some."""
-    environment, root = environments()[name], run_environments.ROOT
-    found = probe(environment, root, tmp_path, environment.around(root, tmp_path))
-    assert found["numpy"] and found["scipy"]
-    if name != "numpy-baseline" or environment.variables["NPY_DISABLE_CPU_FEATURES"]:
-        assert environment.holds(found, PLAIN)
-
-
-def test_variables_are_set_taken_away_and_named_folders_made(tmp_path, monkeypatch):
-    monkeypatch.setenv("HOME", "/somewhere")
-    monkeypatch.setenv("TZ", "UTC")
-    variables = {"HOME": None, "TMPDIR": "tmp \u00fc", "A": "1"}
-    there = run_environments.Environment("", variables).variables_in(tmp_path)
-    assert "HOME" not in there and "TZ" not in there and there["A"] == "1"
-    assert there["TMPDIR"] == str(tmp_path / "tmp \u00fc") and os.path.isdir(there["TMPDIR"])
-
-
-def test_what_does_not_end_is_ended():
-    assert run_environments.ended([sys.executable, "-c", "import time; time.sleep(60)"], 0.2) is None

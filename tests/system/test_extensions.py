@@ -1,34 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Every hardening law, shape and reference solution is known wherever one of each is asked for:
-what is forgotten of a new one is named here.
+"""Every hardening law and shape is known wherever one of each is asked for: what is forgotten of a new one is
+named here.
 """
 
 import math
-import pkgutil
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from builders import HARDENING, SHAPES, SPHERE_TEXT, YIELD_CURVE, scene
 
-import sam
 from sam.grid.cells import CellGrid
 from sam.planner import bodies
-from sam.planner.bodies import Opposite
-from sam.planner.make import UnsupportedScene, check
 from sam.scene import load_scene
 from sam.scene.body import LAWS
 from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES
-from verification import reference
 from verification.checks.conditions import GAPS
 from verification.checks.material import yield_stress
-from verification.cost.advice import advice_of
-from verification.cost.estimates import plastic_boxes
 
 ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs" / "guide" / "scenes.md").read_text()
-FILM = {"thickness": 1e-6, "young": 400e9, "poisson": 0.3}
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -55,30 +46,3 @@ def test_every_shape_has_the_same_gap_in_the_checks_and_is_in_the_guide(shape):
     gap = bodies.SHAPES[shape].gap(other).gap(grid)
     np.testing.assert_allclose(GAPS[shape](other, x, y)[~edge], gap[~edge], rtol=1e-14)
     assert f'`"{shape}"`' in GUIDE
-
-
-def test_one_row_of_the_table_is_enough_for_a_shape_without_radii_which_needs_a_force(monkeypatch):
-    monkeypatch.setitem(
-        bodies.SHAPES, "cone", Opposite(lambda _: None, lambda found, _: (2e-6 * bool(found.force),) * 2)
-    )
-
-    def cone(**tables):
-        found = scene(**tables)
-        shape = found.counterbody.model_copy(update={"shape": "cone", "radius": None})
-        return found.model_copy(update={"counterbody": shape})
-
-    coated = sam.plan(cone(body={"coating": FILM})).grid
-    assert 0.6e-6 < coated.nx * coated.hx / 4 < 6e-6
-    yielding = cone(body={"plasticity": {"law": "perfect", "yield_stress": 1e9}})
-    assert plastic_boxes(yielding, sam.plan(yielding)) and advice_of(yielding, ["sam"])["kind"] is None
-    with pytest.raises(UnsupportedScene, match=r'loading\.force = 0.*"cone".*above 0'):
-        check(cone(loading={"force": 0.0}))
-
-
-def test_every_reference_solution_is_asked_for_by_a_test():
-    texts = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
-    names = {module.name for module in pkgutil.iter_modules(reference.__path__)} - {"checks"}  # of arguments
-    untested = {
-        name for name in names if not re.search(rf"\breference\.{name}\b|^    {name},$", texts, re.MULTILINE)
-    }
-    assert not untested

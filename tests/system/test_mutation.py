@@ -3,10 +3,7 @@
 its gates turn red.
 """
 
-import json
-import os
 import sys
-from dataclasses import replace
 from functools import _lru_cache_wrapper
 from types import FunctionType
 
@@ -14,14 +11,10 @@ import numpy as np
 import pytest
 
 from sam.kernels.patches import Lags, displacement_coefficients as coefficients
-from verification.cases.robustness import mutation as case
-from verification.judging import evaluate
-from verification.robustness.mutants import __main__ as mutation, equivalent, frozen, inject, judge, scope
+from verification.robustness.mutants import frozen, inject, scope
 from verification.robustness.mutants.changes import Mutant, Number, find
-from verification.robustness.mutants.equivalent import change
 from verification.robustness.mutants.judge import MutantVerdict, forked
 from verification.robustness.mutants.scope import mutants_of
-from verification.rows import load_rows
 
 TOY = '''"""A toy."""
 from functools import cache
@@ -127,10 +120,6 @@ def test_a_mutant_is_put_where_it_is_used(toy):
         assert found[key] == (pytest.approx(expected, rel=1e-14) if isinstance(expected, float) else expected)
 
 
-def test_a_task_that_dies_has_no_answer():
-    assert in_forks([("dies", lambda: os._exit(1)), ("ends", lambda: 3)]) == {"dies": None, "ends": 3}
-
-
 def test_integer_is_a_number_beside_floats_alone():
     two, floats, whole = Number(2, 1.001), np.array([2.0, 4.0]), np.array([2, 4])
     assert (two * 3, 3 + two, 5**two, [4, 5, 6][two], len(range(two))) == (6, 5, 25, 6, 2)
@@ -142,19 +131,6 @@ def test_integer_is_a_number_beside_floats_alone():
     assert two.met and floats.tolist() == [4.004, 8.008]
     assert np.subtract(np.array([6.0]), two).tolist() == [6.0 - 2.002]
     np.testing.assert_allclose(whole / two, [4 / 2.002, 8 / 2.002])
-
-
-def test_rewriting_alone_changes_no_bit():
-    def spectra():
-        from sam.layered.response import Layers, Response  # noqa: PLC0415 - rewritten in the fork
-
-        return Response(Layers(1e9, 0.3, 1.0, 2e11, 0.25), np.geomspace(0.01, 10, 9)).surface
-
-    def rewritten():
-        inject.put([m for m in mutants_of("sam.layered.response") if m.kind in scope.NUMBERS], 1.0)
-        return spectra()
-
-    np.testing.assert_array_equal(in_forks([("it", rewritten)])["it"], spectra())
 
 
 def test_row_of_a_table_is_perturbed_and_forgotten_with_the_fork():
@@ -211,63 +187,3 @@ def test_the_frozen_table_and_the_draw_do_not_depend_on_places():
     assert scope.drawn(one) == scope.drawn(moved)
     drawn = [scope.drawn(m) for name in scope.modules() for m in mutants_of(name) if not scope.whole(m)]
     assert np.mean(drawn) == pytest.approx(scope.PERCENT / 100, abs=0.03)
-
-
-def test_tests_are_asked_about_what_they_or_their_helpers_import():
-    this = sys.modules[__name__]
-    assert judge.uses(this, {"sam.kernels.patches"}) and judge.uses(this, {"sam.kernels.eigenstrain"})
-    assert not judge.uses(this, {"sam.elastic.misfit", "sam.moving"})
-
-
-def test_change_is_that_of_the_worst_column():
-    before = {"a_m": np.array([1.0, 2.0]), "b_m": np.array([1e-12, 0.0])}
-    before |= {"t.p_Pa": np.array([0.0, np.nan, 5.0])}
-    assert change(before, before) == 0.0
-    assert change(before, before | {"a_m": np.array([1.0, 2.002])}) == pytest.approx(1e-3)
-    assert change(before, before | {"b_m": np.array([2e-12, 0.0])}) == pytest.approx(5e-7)
-    assert change(before, before | {"b_m": np.array([1e-12])}) == np.inf
-
-
-MUTANT = Mutant("sam.contact.normal", "number", "f", 1, "2.0", 3, "return 2.0 * x")
-KILLED, SURVIVED = (
-    MutantVerdict(MUTANT, "killed", "tests/a.py::b", 0.2, "assert", 1),
-    MutantVerdict(MUTANT, "survived"),
-)
-SHOWN = equivalent.Shown(MUTANT, "where an iteration starts", 0.5, 2)
-GOOD = {"judged": [KILLED] * 40, "shown": [SHOWN], "control": [], "lost": {}, "gone": []}
-GOOD |= {"tests": 2, "seconds": 1.0}
-
-
-def read_back(answer, tmp_path, monkeypatch):
-    """What the case reads of the file that the program writes of a check."""
-    monkeypatch.setattr(mutation, "check", lambda *_: answer)
-    monkeypatch.setattr(sys, "argv", ["mutation", "--json", str(tmp_path / "judged.json")])
-    mutation.main()
-    return json.loads((tmp_path / "judged.json").read_text(encoding="utf-8"))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "gate"),
-    [
-        ({}, ""),
-        ({"judged": [KILLED] * 9 + [SURVIVED]}, "mutation.killed"),
-        ({"lost": {"sam.contact.normal:f:branch:0": "killed before"}}, "mutation.unexplained"),
-        ({"shown": [replace(SHOWN, change=50.0)]}, "mutation.not-inert"),
-        ({"control": ["tests/a.py::b"]}, "mutation.rewriting"),
-        ({"judged": [replace(KILLED, seconds=1.2)] * 40}, "mutation.slowest-kill"),
-    ],
-)
-def test_what_is_wrong_turns_its_gate_red(wrong, gate, tmp_path, monkeypatch):
-    found = read_back(GOOD | wrong, tmp_path, monkeypatch)
-    rows = [row for row in load_rows() if row.case == "mutation"]
-    red = {v.row.id for v in evaluate(rows, {"mutation": case.CASES[0].values(found)}) if not v.passed}
-    assert red == ({gate} if gate else set())
-
-
-def test_structure_is_counted_apart_and_survivors_have_their_reason(tmp_path, monkeypatch):
-    judged = [KILLED, replace(KILLED, outcome="structure"), SURVIVED]
-    found = read_back(GOOD | {"judged": judged, "lost": {"m:f": "2: new"}}, tmp_path, monkeypatch)
-    none = "0 of 0"
-    assert case.counts_table(found).rows[-1] == ("all", "1 of 2", none, none, none, "1")
-    assert case.survivors_table(found).rows[0] == ("m:f", "2", "new", "")
-    assert len(case.equivalent_table(found).rows) == 1

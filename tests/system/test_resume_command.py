@@ -3,8 +3,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 from copy import deepcopy
@@ -14,14 +12,12 @@ import numpy as np
 import pytest
 from builders import scene_text
 
-from sam.scene.checkpoint import Checkpoint
 from samfem.cli import main
 from verification.runs import checkpoints, files, models
 from verification.runs.archive import read_archive, write_archive
 from verification.runs.files import CHECKPOINT, FolderError, check_target
 from verification.runs.models import FEM, SAM
 
-ROOT = Path(__file__).resolve().parents[2]
 PLASTIC = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
 LOADS = "steps = 4\nunload = true\n[grid]\ncells = [17, 17]\n[fem]\ncells_per_radius = 4\n"
 ELASTIC = scene_text(("0.65 N", "0.171424 N"), add=LOADS)
@@ -118,28 +114,6 @@ def test_outside_the_main_thread_no_handler_is_set(folder):
     thread.start()
     thread.join()
     assert codes == [0]
-
-
-def test_killed_then_resumed(solve):
-    """kill -9 of a real process, right after its second checkpoint: only that is left, and the rest
-    gives the same bytes.
-    """
-    program = (
-        "import os, signal, sys\n"
-        "from samfem import cli\n"
-        "from verification.runs import checkpoints\n"
-        "class Killed(checkpoints.Writer):\n"
-        "    def write(self):\n"
-        "        super().write()\n"
-        "        if self.written is not None and self.written.done == 2:\n"
-        "            os.kill(os.getpid(), signal.SIGKILL)\n"
-        "checkpoints.Writer = Killed\n"
-        "sys.exit(cli.main(['solve', 'small.toml', '--out', 'out']))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"PYTHONPATH": str(ROOT)})
-    assert done.returncode == -signal.SIGKILL and [path.name for path in OUT.iterdir()] == [CHECKPOINT]
-    solve("--resume")
-    assert is_whole(solve)
 
 
 def test_killed_while_the_result_is_written(solve, monkeypatch):
@@ -265,25 +239,6 @@ def test_an_interval_that_is_no_number_of_seconds_is_refused(solve, monkeypatch,
     monkeypatch.setenv(checkpoints.INTERVAL, text)
     assert f"SAMFEM_CHECKPOINT_S = {text}: a number of seconds >= 0 is needed" in solve(code=2).err
     assert not OUT.exists()
-
-
-@pytest.mark.parametrize(("duration", "pause"), [(1.0, 50.0), (0.01, 5.0)])
-def test_writing_takes_a_small_share_of_the_time(tmp_path, monkeypatch, duration, pause):
-    """One that takes 1 s is followed by the next after 50 s; a fast one after the interval."""
-    clock, times = [0.0], []
-
-    def write(*_):
-        times.append(clock[0])
-        clock[0] += duration
-
-    monkeypatch.setattr(checkpoints.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(checkpoints, "write_archive", write)
-    writer = checkpoints.Writer(tmp_path, {}, 5.0, None, warn=pytest.fail)
-    for k in range(2000):
-        clock[0] += 0.1
-        writer(Checkpoint(SAM, {}, {"done": k, "total": 2000}))
-    gaps = np.diff(times) - duration
-    assert gaps.size and gaps.min() >= pause - 1e-6 and gaps.max() < pause + 0.2
 
 
 def test_a_folder_with_a_checkpoint_alone_is_the_folder_of_a_run(tmp_path):

@@ -19,7 +19,6 @@ from samfem import cli, python
 from samfem.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-BALL = {"shape": "sphere", "radius": "105 um"}
 STEEL = {"young": "210 GPa", "poisson": 0.3}
 
 
@@ -45,26 +44,6 @@ def test_the_examples_of_the_module_hold():
     assert found.failed == 0 and found.attempted > 3
 
 
-def test_a_scene_takes_si_numbers_and_strings_with_units():
-    in_si = {"shape": "sphere", "radius": 105e-6}
-    scenes = [
-        samfem.Scene(body=body, counterbody=ball, loading={"force": force})
-        for body, ball, force in (
-            (STEEL, BALL, "650 mN"),
-            ({"young": 210e9, "poisson": 0.3}, in_si, 0.65),
-        )
-    ]
-    assert scenes[0] == scenes[1]
-    with pytest.raises(samfem.SceneError) as caught:
-        samfem.Scene(body={**STEEL, "young": "210 m"}, counterbody=BALL, loading={"force": -1})
-    words = str(caught.value).splitlines()
-    assert words[:2] == [
-        "scene: 2 errors",
-        '  body.young = "210 m": a pressure from 1e-30 to 1e+30 Pa (a float in SI, or a string with a unit)',
-    ]
-    assert words[2].startswith("  loading.force = -1: must be positive: a force from")
-
-
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
 def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
     scene = parsed(add="unload = true\n" + COARSE)
@@ -83,14 +62,6 @@ def test_a_run_in_memory_is_the_run_that_is_written_and_read(tmp_path, model):
                 assert all(np.array_equal(fields[name], others[name], equal_nan=True) for name in fields)
     with pytest.raises(samfem.FolderError, match="no mesh edge-unloaded: it has surface, fields,"):
         solved.mesh("edge", unloaded=True)
-
-
-def test_a_run_is_shown_short_and_as_html(run):
-    assert repr(run).startswith("<samfem.Run sam, converged: p_max 8.47 GPa") and len(repr(run)) < 125
-    page = run._repr_html_()
-    assert page.count("<details") == page.count("</details>") == 3 and "8.46" in page and "history" in page
-    titled = samfem.Scene(title="<script>", body=STEEL, counterbody=BALL, loading={"force": 0.1})
-    assert "<script" not in samfem.solve(titled)._repr_html_()
 
 
 def test_warnings_are_listed_shown_and_issued():
@@ -131,18 +102,6 @@ def test_a_comparison_passes_and_fails_with_its_rows_and_is_read_back(folder, co
     columns = ["quantity", "sam", "fem", "tolerance", "passed"]
     assert_frame_equal(read.frame[columns], comparison.frame[columns])
     assert read.passed and read.sam.model == "sam" and read.fem.model == "fem-axisymmetric"
-
-
-def test_a_sweep_returns_its_table_and_runs(tmp_path):
-    (tmp_path / "sphere.toml").write_text(scene_text(add=COARSE))
-    study = 'scene = "sphere.toml"\n[vary]\n"loading.force" = { list = ["0.1 N", "0.2 N"] }\n'
-    (tmp_path / "study.toml").write_text(study)
-    found = samfem.sweep(tmp_path / "study.toml", out=tmp_path / "sweep", workers=1)
-    assert list(found.frame["loading.force"]) == [0.1, 0.2]
-    assert found.run(1).quantities["p_max_Pa"] == found.frame["p_max_Pa"][1]
-    ratio = found.frame["approach_m"][1] / found.frame["approach_m"][0]
-    assert ratio == pytest.approx(2 ** (2 / 3), rel=2e-3)  # Hertz
-    assert "2 scenes" in repr(found) and "sweep" in samfem.plot(samfem.read(tmp_path / "sweep"))
 
 
 def test_a_sweep_of_a_mapping_leaves_nothing(folder):

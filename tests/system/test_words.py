@@ -8,28 +8,21 @@ import json
 import re
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, HARDENING, MODULUS, RADIUS, parsed, scene_text
+from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 
-import sam
-from fem_reference.common.refusals import advice_of, message_of
+from fem_reference.common.refusals import message_of
 from sam.half_space import circular_contact_radius
 from sam.planner.make import remedies_of
 from sam.results.tables import advice as words_of
-from sam.scene import Compare, HeightMap, Scene, SceneError, Status, resolved
+from sam.scene import Compare, Scene, SceneError, Status, resolved
 from sam.scene.section import OTHER_NAMES, Section, places_of
-from samfem import comparing
 from samfem.cli import CLAIMS
-from verification.compare.rows import judged
-from verification.cost import plan as plan_module
-from verification.judging import Measured
-from verification.runs import checkpoints, models, store
+from verification.runs import models
 from verification.runs.study import read_study
-from verification.text.readable import in_working_unit, with_prefix, with_time
 
 
 def advice(scene: Scene, status: Status) -> str:
@@ -123,31 +116,6 @@ class TestClaim:
         assert 'one of "negligible-film"' in samfem("plan", unknown, code=2).err
         samfem("compare", scene_file(add=FILM), "--claim", "no-film", code=2)
         assert get_args(get_args(Compare.model_fields["claim"].annotation)[0]) == CLAIMS
-
-    def test_a_result_does_not_depend_on_the_claim(self):
-        """Key of the store, and what --resume compares."""
-        bare, asked = (parsed(add=self.film + add) for add in ("", self.asked))
-        for identity in (store.identity, checkpoints.identity):
-            assert identity(bare, models.SAM) == identity(asked, models.SAM)
-
-
-def test_values_and_times_for_a_person():
-    for value, unit, text in (
-        (1.2e13, "B", "12 TB"),
-        (9.999e8, "B", "1 GB"),
-        (0.0, "B", "0 B"),
-        (8.62e-6, "m", "8.62 um"),
-        (999.9e-9, "m", "1 um"),
-        (-2.5e9, "Pa", "-2.5 GPa"),
-        (1e-20, "m", "1e-08 pm"),
-        (float("inf"), "m", "inf m"),
-    ):
-        assert with_prefix(value, unit) == text
-    sizes = [("contact_area_m2", 2.45781e-7, None), ("p_max_Pa", 5e7, None), ("approach_m", 3e-8, 2e-3)]
-    shown = [in_working_unit(name, value, beside=beside)[1] for name, value, beside in sizes]
-    assert shown == ["0.245781 mm^2", "50 MPa", "3e-05 mm"]
-    times = [with_time(seconds) for seconds in (0.0123, 99.0, 150.0, 9e4, 1e6)]
-    assert times == ["0.012 s", "99 s", "2.5 min", "25 h", "12 days"]
 
 
 @pytest.mark.parametrize(
@@ -274,62 +242,3 @@ class TestAdviceOfWhatCanBeChanged:
     def test_a_key_at_its_limit_is_not_advised(self, advise, status, limit, key):
         assert f"raise {key}" in advise(SMOOTH, status)
         assert key not in advise(with_changes(SMOOTH, **limit), status)
-
-    def test_a_load_and_friction_are_lowered_by_the_keys_of_their_law(self):
-        pressure = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": 1e-6}
-        given = with_changes(SMOOTH.model_copy(update={"counterbody": None}), loading=pressure)
-        for advise in (advice, message_of):
-            said = advise(given, Status.CONTACT_AT_GRID_EDGE)
-            assert "loading.p0" in said and "loading.force" not in said
-        assert "friction" not in advice(SMOOTH, Status.NOT_CONVERGED)
-        slides = with_changes(SMOOTH, friction={"coefficient": 4.0})
-        assert "lower friction.coefficient, 4" in advice(slides, Status.NOT_CONVERGED)
-        said = advice(with_changes(SMOOTH, friction={**CHEMICAL_FILM, "high": 5.0}), Status.NOT_CONVERGED)
-        assert "lower friction.high, 5" in said and "friction.coefficient" not in said
-        film = {"thickness": 1e-7, "young": 8e10, "poisson": 0.3, "yield_stress": 1e9}
-        coated = with_changes(SMOOTH, body={**resolved(SMOOTH)["body"], "coating": film})
-        _, said = advice_of(coated).outcome(Status.CONVERGED, 1e3)
-        assert "raise body.coating.yield_stress" in said and "friction" not in said
-
-    def test_relief_is_not_advised_where_it_is_set(self):
-        """A contact that covers the whole patch."""
-        for border, advised in (("free", True), ("relief", False)):
-            plan = sam.plan(with_changes(PATCH, grid={**resolved(PATCH)["grid"], "border": border}))
-            touching = SimpleNamespace(pressure=np.ones(plan.grid.shape))
-            *_, edge = plan.rough.warnings(plan.grid, touching)
-            assert "touches the edge" in edge and ('grid.border = "relief" lets' in edge) == advised
-            assert ("raise grid.extent" in edge) != advised and "0 x 0" not in edge
-
-    def test_cells_of_a_measured_surface_are_not_raised_but_resampled(self):
-        """They are those of the file."""
-        surface = {"kind": "file", "path": HeightMap(np.zeros((16, 16)), (16e-6, 16e-6))}
-        measured = Scene(**{**resolved(PATCH), "surface": surface, "grid": None})
-        for advise in (advice, message_of):
-            said = advise(measured, Status.UNDER_RESOLVED)
-            assert 'surface.resample = "fourier" with grid.cells above [16, 16]' in said
-            assert "raise grid.cells" not in said and "grid.extent" not in said
-        data = {**resolved(PATCH), "surface": {**surface, "resample": "fourier"}, "grid": {"cells": (32, 32)}}
-        resampled = advice(Scene(**data), Status.UNDER_RESOLVED)
-        assert "raise grid.cells = [32, 32]" in resampled and "resample" not in resampled
-        assert "surface.crop" in plan_module._smaller(measured, models.SAM)
-        assert "raise grid.cells = [16, 16]" in advice(PATCH, Status.UNDER_RESOLVED)
-        given = "raise grid.cells, or give a smaller grid.extent"
-        assert advice(SMOOTH, Status.UNDER_RESOLVED).endswith(given)
-
-
-@pytest.mark.parametrize("scene", [SMOOTH, PATCH])
-def test_a_comparison_is_refined_by_keys_of_the_scene_unless_a_solve_did_not_converge(scene, capsys):
-    row, how = (
-        judged("p_max_Pa", "relative", Measured(1.0, 2.0), (0.01, "")),
-        {"model": "sam", "uncertainty": None},
-    )
-    good = SimpleNamespace(converged=True, discretisation={}, **how)
-    bad = SimpleNamespace(converged=False, status=Status.STEP_CUT_LIMIT, message="change this", **how)
-    bad.discretisation = {}
-    assert comparing._judge(scene, [good], [row]) == 1
-    said = capsys.readouterr().err
-    assert "p_max_Pa" in said and "raise grid.cells" in said and "number of layers" not in said
-    assert ("fem.cells_per_radius = 16" in said) == (scene is SMOOTH)
-    assert comparing._judge(scene, [bad, good], [row]) == 1
-    said = capsys.readouterr().err
-    assert "change this" in said and "tolerance" not in said

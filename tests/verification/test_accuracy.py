@@ -81,20 +81,6 @@ def test_what_is_missing_is_refined_and_nothing_else(of_cells, of_steps, cells, 
     assert (len(several) > 3) == steps
 
 
-def test_what_is_not_reached_is_said_with_what_it_would_take():
-    """An error that does not fall: grids to the end of what is allowed, and the best of them is returned."""
-    count = iter(range(1000))
-
-    def solver(scene):
-        result = made(scene, 30.0, 0.0)
-        return Result(**vars(result) | {"quantities": result.quantities | {"peeq_max": 1 + next(count) % 3}})
-
-    result, _ = searched(asked(0.05), solver)
-    found = result.discretisation["accuracy"]
-    assert not found["reached"] and found["relative"] == min(each["relative"] for each in found["attempts"])
-    assert "accuracy 5 % not reached with" in missed(result) and found["why"] in missed(result)
-
-
 @pytest.mark.parametrize(
     "memory, longest, words",
     [(4e8, 900.0, "memory needed, 400 MB available"), (1e12, 4.0, "4 s allowed for all solves")],

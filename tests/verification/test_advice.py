@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets."""
 
-import gzip
 import json
 import math
 from pathlib import Path
@@ -31,8 +30,6 @@ from verification.cost.advice import (
     AdviceRow,
     advice_of,
     kind_of,
-    read_rows,
-    table_text,
 )
 from verification.cost.contact import expected_contact, hertz_of
 from verification.cost.plan import plan
@@ -128,19 +125,6 @@ def test_the_committed_table_covers_every_kind_and_error():
         for row in own:
             assert (row.bound == NEVER) == math.isnan(row.seconds)
             assert row.method in (*MODELS, ON_TWO_GRIDS, LOAD_STEPS) and row.bound in ("", "<", NEVER)
-
-
-@pytest.mark.parametrize("packed", [False, True])
-def test_a_report_gives_the_table(tmp_path, monkeypatch, capsys, packed):
-    (tmp_path / "figures").mkdir()
-    text = table_text(ROWS).encode()
-    (tmp_path / (advice.REPORTED + packed * ".gz")).write_bytes(gzip.compress(text) if packed else text)
-    (tmp_path / "data").mkdir()
-    monkeypatch.setattr(advice, "__file__", str(tmp_path / "cost" / "advice.py"))
-    advice.main(tmp_path)
-    assert (tmp_path / "data" / "advice.csv").read_text(encoding="utf-8") == table_text(ROWS)
-    assert table_text(read_rows(table_text(ROWS))) == table_text(ROWS)
-    assert "6 rows" in capsys.readouterr().out
 
 
 def test_plan_is_short_and_in_numbers_the_same(capsys):

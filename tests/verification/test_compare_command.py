@@ -165,16 +165,3 @@ REFUSED = {
 @pytest.mark.parametrize("words, fragment", REFUSED.values(), ids=REFUSED)
 def test_a_wrong_option_is_refused_and_nothing_is_created(scenes, refused, words, fragment):
     assert fragment in refused("compare", "off.toml", *words)
-
-
-def test_all_that_is_wrong_with_all_scenes_is_said_at_once(scenes, refused):
-    (scenes / "bad.toml").write_text(scene_text(("0.65 N", "-1 N")))
-    options = "--tolerance", "p=1", "--junit", "no/rows.xml"
-    said = refused("compare", "good.toml", "bad.toml", "none.toml", *options)
-    for words in (
-        "good.toml: tolerances.p",
-        "bad.toml: loading.force",
-        "none.toml: cannot",
-        "--junit no/rows",
-    ):
-        assert words in said

@@ -1,17 +1,16 @@
-"""What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one."""
-
-import json
+"""What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one; and
+the figure of a sweep has each value at its point.
+"""
 
 import numpy as np
 import pytest
-from fake_case import FakeCase
+from builders import scene_text
 from matplotlib.ticker import FixedLocator
 
-from samfem.publishing import report
-from verification.cases.case import Outcome, Plot
 from verification.figures.check import findings
-from verification.figures.style import BLUE, VERMILION, Drawing, sheet
-from verification.suite import verify
+from verification.figures.style import BLUE, VERMILION, sheet
+from verification.figures.sweep import summary
+from verification.runs.study import read_study
 
 X = np.linspace(0.0, 10.0, 21)
 
@@ -91,28 +90,39 @@ def test_a_map_without_colour_bar_is_found():
     assert "have no colour bar" in " ".join(findings(figure))
 
 
-@pytest.mark.parametrize(("draw", "code"), [(lambda figure, axis: None, 0), (touching, 1)])
-def test_a_figure_that_cannot_be_read_fails_its_case_in_every_record(
-    tmp_path, monkeypatch, capsys, draw, code
-):
-    def does(context):
-        with sheet(4.0, 3.0) as (figure, axis):
-            good(figure, axis)
-            draw(figure, axis)
-        plot = Plot(Drawing(figure, {"x": [1.0]}), "curve", "A curve", "Caption")
-        return Outcome(figures=[context.save(plot)])
+# the figure of a sweep
 
-    own = FakeCase("own", "Own", "Is it read?", does=does)
-    monkeypatch.setattr(verify, "all_cases", lambda: {"own": own})
-    assert verify.main(["own"], "quick", tmp_path / "out") == code
-    drawn = tmp_path / "out" / "figures" / "own-curve.pdf"
-    assert report(tmp_path / "out", pdf=True) == 0 and drawn.read_bytes()[:5] == b"%PDF-"
-    case = json.loads((tmp_path / "out" / "results.json").read_text())["cases"][0]
-    assert case["status"] == ("failed" if code else "passed")
-    assert bool(case["figures"][0]["findings"]) == bool(code)
-    line = "figures/own-curve.png: the texts 'the first' and 'the second' collide"
-    said = capsys.readouterr().out
-    assert (line in said) == bool(code) and str(drawn) in said.splitlines()
-    pages = "".join(page.read_text() for page in (tmp_path / "out").glob("*.html"))
-    assert ("cannot be read" in pages) == bool(code)
-    assert ("figures" in (tmp_path / "out" / "junit.xml").read_text()) == bool(code)
+
+STUDY = """
+title = "odd $\\\\x"
+scene = "sphere.toml"
+[vary]
+"loading.force" = { range = ["0.1 N", "0.4 N"], count = 4 }
+"counterbody.radius" = { log = ["10 um", "1 mm"], count = 3 }
+"title" = { list = ["$\\\\bad", "b"] }
+"""
+
+
+def test_a_grid_of_two_numbers_is_a_map(tmp_path):
+    """Each cell has the value of its point, about which it lies; the point that failed is a cross."""
+    (tmp_path / "sphere.toml").write_text(scene_text())
+    (tmp_path / "study.toml").write_text(STUDY.replace('"title"', '#"title"'))
+    content = read_study(tmp_path / "study.toml")
+    rows = [
+        dict(zip(content.study.vary, point.shown, strict=True)) | {"status": "converged"}
+        for point in content.points
+    ]
+    for k, row in enumerate(rows):
+        row |= {"p_max_Pa": 1e9 * k, "contact_radius_m": 1e-6, "approach_m": 1e-7, "peeq_max": 0.0}
+    rows[-1] |= {"status": "failed", "p_max_Pa": None}
+    figure = summary(content.study, rows).figure
+    panel, *_ = figure.axes
+    (drawn,) = panel.collections
+    found = np.ma.filled(drawn.get_array(), np.nan).T.ravel()
+    assert np.array_equal(found, [*range(len(rows) - 1), np.nan], equal_nan=True)
+    edges = drawn.get_coordinates()[:, 0, 1]
+    assert np.allclose(np.log10(edges), [0.5, 1.5, 2.5, 3.5])
+    assert (panel.get_xlabel(), panel.get_yscale()) == ("normal force [N]", "log")
+    (cross,) = panel.lines
+    assert np.allclose(cross.get_xydata(), [0.4, 1000.0])
+    figure.draw_without_rendering()

@@ -1,12 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""The closed form of a sphere that grows in an elasto-plastic body."""
+"""A sphere that grows in an elasto-plastic body: closed form, a period of it, what its cases measure."""
+
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
+from made_results import context
 from scipy.integrate import solve_ivp
 
+from verification.cases.cyclic import misfit_cycles
+from verification.cases.plastic.misfit_images import CELLS as IMAGE_CELLS, NAMES, images
+from verification.cases.plastic.misfit_sphere import l2, law, means_of_cells, order_of_half, second_order
 from verification.reference import misfit_sphere
 from verification.reference.misfit_sphere import GrowingSphere
+from verification.references import growing_sphere
+from verification.rows import load_rows
 
 YOUNG, NU = 210e9, 0.3
 A = 1e-5  # radius in m
@@ -87,3 +97,53 @@ def test_bad_input_is_named(name):
     good = {"young": YOUNG, "nu": NU, "law": linear, "misfit": 0.02, "radius": 1.0}
     with pytest.raises(ValueError, match=name):
         GrowingSphere(**good | {name: "cube" if name == "profile" else -1.0})
+
+
+# cases of a sphere that grows
+
+
+def test_the_exact_solution_of_a_period_is_that_of_the_closed_form():
+    """A sphere that comes and goes twice: what the second period adds at the radius of the largest strain."""
+    solver = context("misfit-cycles", Path(), "full")
+    scene = misfit_cycles.above_limit(solver.scene("misfit-sphere"), (0.2, 90.0))
+    loading = scene.loading.model_copy(update={"profile": "gauss", "cycles": 2})
+    scene = scene.model_copy(update={"loading": loading})
+    r = misfit_cycles.REACHES * loading.radius
+    assert growing_sphere(scene).shares == (1.0,)  # it is put on alone
+    _, once, _, twice = growing_sphere(scene, (1.0, 0.0) * 2).history(r)
+    exact = misfit_cycles.cycled_sphere(scene).values
+    assert exact["peeq"] == pytest.approx([(twice.peeq - once.peeq).max()], rel=1e-12)
+    assert exact["strain"] == pytest.approx([np.abs(2 * (twice.plastic - once.plastic)).max()], rel=1e-12)
+
+
+# errors of the case, and coefficients of the images
+
+
+CASE = "misfit-sphere"
+
+
+def test_the_order_of_two_sizes_and_the_error_of_second_order():
+    errors = pd.DataFrame({"total": [-4e-3, 1e-3, 3e-4], "sphere-cells": [6, 8, 12]})
+    assert second_order(errors, "total") == pytest.approx(0.144, rel=1e-12)
+    assert order_of_half(pd.DataFrame({"l2": [0.012, 0.002]}), "l2") == pytest.approx(np.log2(6.0), rel=1e-12)
+
+
+def test_a_strain_that_is_one_percent_too_large_is_off_by_that():
+    scene = law(context(CASE, Path()).scene(CASE), "linear")
+    x = np.linspace(-1.0, 1.0, 7) * scene.loading.radius
+    box = SimpleNamespace(x=x, y=x, z=x + scene.loading.depth, cell_data={})
+    result = SimpleNamespace(grids={"peak": {"body": box}})
+    box.cell_data["peeq"] = 1.01 * means_of_cells(scene, result)
+    assert l2(scene, result, None) == pytest.approx(0.01, rel=1e-9)
+
+
+def test_each_coefficient_of_the_image_that_is_1_percent_off_turns_its_gate_red():
+    """All 36 of the stress and 6 of the displacement, in either sense."""
+    scene = context(CASE, Path()).scene(CASE)
+    found = images(growing_sphere(law(scene, "linear")), IMAGE_CELLS)
+    tolerances = {gate.id: gate.tolerance for gate in load_rows()}
+    gated = [{"yy": "xx", "yz": "xz"}.get(name, name) for name in (*NAMES, "raised")]
+    limits = np.array([tolerances[f"{CASE}.sam-image-{name}"] for name in gated])
+    assert (found.left() < limits).all()
+    for off in 0.01 * np.vstack([np.eye(6), -np.eye(6)]):
+        assert (found.left(1 + off) > limits).all()

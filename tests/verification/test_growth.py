@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Growth of time and memory: exponents, processes that measure themselves alone, the published code."""
 
-import json
 import os
-import subprocess
 
 import numpy as np
 import pandas as pd
@@ -12,8 +10,7 @@ from builders import PERFECT, SWIFT, scene
 from made_results import of_frame, red
 
 from sam.scene import parse_scene
-from verification.cases.case import Context
-from verification.cases.cost import growth as case, published_code
+from verification.cases.cost import published_code
 from verification.cost import estimates, growth
 from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
@@ -89,114 +86,7 @@ def test_every_count_has_a_factor():
             assert found.work.keys() <= estimates.TIME[rung.model].keys()
 
 
-def synthetic(power: float = 1.0) -> tuple[dict, dict]:
-    """Measurements that grow as they should (their time to `power`) and are as the plan says."""
-    found = {}
-    for name, make in growth.FAMILIES.items():
-        found[name] = []
-        for k, rung in enumerate(make()):
-            size = rung.size or 1e4 * 3**k
-            seconds = 1e-3 * (size if name == "cycles" else size / 1e3) ** power * (1 + (name == "stresses"))
-            said = estimates.estimate(rung.scene, rung.model)
-            memory = max(said.memory_bytes - round(estimates.IDLE_BYTES), 1)
-            row = {"model": rung.model, "family": rung.family, "scene": rung.label, "size": size}
-            row |= {"cpu-s": seconds, "predicted-s": said.time_s, "memory": memory}
-            found[name].append(row | {"predicted-memory": memory, "converged": True})
-    boxes = {name: [box_of(power, *sizes) for sizes in each] for name, each in case.BOXES.items()}
-    return found, boxes
-
-
-def box_of(power: float, nx: int, ny: int, nz: int, error: float) -> dict:
-    cells = nx * ny
-    cost = {"cpu-s": (1e-8 * cells * (nz if error else nz**2)) ** power, "set-up-s": 1e-5 * cells * nz}
-    size = {"cells": cells * nz, "plane": cells, "depth": nz}
-    return {"model": SAM, "scene": "box", **size, **cost, "stored": 8 * cells, "memory": 9 * cells * nz}
-
-
-def gates(found, boxes) -> tuple[pd.DataFrame, dict, set[str]]:
-    """The frame, the values of the rows and those that are red."""
-    frame = pd.DataFrame(case.rows_of(found, boxes))
-    values = of_frame("growth", frame)
-    return frame, values, red("growth", values, whole=True)
-
-
-def test_growth_as_it_should_be_passes(tmp_path):
-    frame, values, wrong = gates(*synthetic())
-    assert wrong <= {"time-factor"}
-    assert values["exponent-contact"].value == pytest.approx(1.0)
-    assert values["memory-error"].value == pytest.approx(0.0, abs=1e-6)
-    assert case.exponents(frame).rows[0][-1] == "1.00 ± 0.00"
-    context = Context("growth", tmp_path, "full", lambda *_: None)
-    assert context.save(case.times(None, frame)).findings == ()
-
-
-def test_growth_that_is_too_fast_is_red():
-    own = {f"exponent-{name}" for name in ("contact", "stresses", "plane", "depth", "cycles")}
-    assert own <= gates(*synthetic(power=1.4))[2]
-
-
-def test_memory_that_was_not_predicted_and_a_solve_that_failed_are_red():
-    found, boxes = synthetic()
-    last = found["contact"][-1]
-    last |= {"memory": round(1.25 * last["memory"]), "converged": False}
-    assert {"memory-error", "unconverged"} <= gates(found, boxes)[2]
-
-
 # against the published code
-
-PROGRAM = """
-import json, os
-def main():
-    with open({log!r}, "a") as log:
-        log.write({name!r} + open("scene.toml").read() + os.environ["OMP_NUM_THREADS"])
-    os.mkdir("run")
-    cost = {{"cpu_s": 1.0, "peak_memory_bytes": {memory}, "ffts": 40, "newton_iterations": None}}
-    found = {{"cost": cost, "quantities": {{"force_N": 1.0}}, "scene": {{"solver": {{"tolerance": 1e-3}}}}}}
-    json.dump(found, open("run/summary.json", "w"))
-    return {code}
-"""
-
-
-def test_both_codes_solve_the_published_scene_in_turns_and_a_loss_is_named(tmp_path, monkeypatch):
-    log, root = tmp_path / "log", tmp_path / "root"
-    for folder in ("samfem", "reports", "verification/scenes"):
-        (root / folder).mkdir(parents=True)
-    cli, report = root / "samfem/cli.py", root / "reports/results.json"
-    (root / "pyproject.toml").write_text('[project]\n[project.scripts]\nsamfem = "samfem.cli:main"\n')
-    (root / "verification/scenes/small.toml").write_text("cells = 9\nsteps = 2\n")
-    monkeypatch.setattr(published_code, "ROOT", root)
-    monkeypatch.setattr(published_code, "RUNGS", (published_code.Rung("small", "small", {"cells": "3"}),))
-    assert published_code.published() == "" and "with its history" in published_code.missing()
-
-    def git(*words: str) -> str:
-        named = ("-c", "user.name=n", "-c", "user.email=e", "-C", str(root))
-        return subprocess.run(
-            ["git", *named, *words], check=True, capture_output=True, text=True
-        ).stdout.strip()
-
-    cli.write_text(PROGRAM.format(log=str(log), name="old ", memory=10**8, code=0))
-    git("init", "--quiet")
-    git("add", ".")
-    git("commit", "--quiet", "--message", "published")
-    cli.write_text(PROGRAM.format(log=str(log), name="new ", memory=125 * 10**6, code=0))
-    (root / "verification/scenes/small.toml").write_text("cells = 10\n")
-    head = git("rev-parse", "HEAD")
-    growing = {"name": "growth", "tables": [[]], "reused": {"commit": "0" * 40}}
-    broken_off = {"name": "published-code", "tables": [], "reused": None}
-    report.write_text(json.dumps({"provenance": {"commit": head}, "cases": [growing, broken_off]}))
-    assert published_code.published() == "0" * 40 and "with its history" in published_code.missing()
-    report.write_text(report.read_text().replace("[]", "[[]]"))
-    assert published_code.published() == head and published_code.missing() == ""
-    context = Context("published-code", tmp_path, "full", lambda *_: None)
-    (row,) = published_code.frame(context)
-    assert log.read_text() == "old cells = 3\nsteps = 2\n1new cells = 3\nsteps = 2\n1" * published_code.PAIRS
-    assert row["memory ratio"] == 1.25 and row["counts"] == "equal" and row["time ratio"] > 0.0
-    time, memory = published_code.losses(pd.DataFrame([row | {"time ratio": 1.1}])).rows
-    assert time[1:] == ("1.10", "in small; in no scene more than 1.2")
-    assert memory[1:] == ("1.25", "more than 1.2 in small (1.25)")
-    cli.write_text(PROGRAM.format(log=str(log), name="", memory=1, code=1))
-    with pytest.raises(RuntimeError, match="small, this code"):
-        next(published_code.frame(context))
 
 
 def took(time: float = 1.0, ffts: int = 100, **quantities) -> dict:

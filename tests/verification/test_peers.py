@@ -16,7 +16,7 @@ from verification.cases.peers import peers
 from verification.judging import evaluate
 from verification.peers import elastic, plastic, problems, running
 from verification.peers.programs import sam as ours
-from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement, PeersError
+from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement
 from verification.rows import load_rows
 from verification.suite.verify import main
 
@@ -37,21 +37,6 @@ class TestProblems:
         p0 = 2 * e_star * a / (math.pi * radius)
         assert (a, p0) == pytest.approx((ours.RADIUS_M, 3 * scene.body.plasticity.yield_stress), rel=1e-12)
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
-
-    def test_periodic_step_is_the_sphere_as_a_summit(self):
-        free = ours.scene_of(8, 4, 1e-3)
-        repeats = ours.repeated(free)
-        assert repeats.patch == (free.grid.cells, free.grid.extent) and repeats.grid.periodic == "xy"
-        x = (np.arange(8) + 0.5) / 8 * free.grid.extent[0] - free.grid.extent[0] / 2
-        summit = -np.add.outer(x**2, x**2) / (2 * free.counterbody.radius)
-        assert np.allclose(repeats.surface.path.values, summit, rtol=1e-12, atol=0.0)
-        assert (repeats.loading, repeats.body) == (free.loading, free.body)
-
-
-def test_cancelled_error_does_not_count():
-    """A largest pressure right by chance has the error of the discrete problem."""
-    p = problems.P0 * np.array([0.5, 1.0])
-    assert elastic.hertz_error(p, 0.0) == 0.0 and elastic.hertz_error(p, 3e-4) == 3e-4
 
 
 def timed(cells, seconds, label="", converged=True):
@@ -79,14 +64,6 @@ class TestTimes:
         never = peers.reached(made, 1e-9)
         assert never[SAM][1] is None and math.isnan(peers.ratio(never[TAMAAS][1], None))
 
-    def test_fastest_is_of_those_that_are_good_enough(self):
-        made = rows(sam=[(0.1, "loose"), (0.2, "tight")])
-        made["error"] = [1e-2, 1e-2, 1e-5, 1e-5]
-        assert peers.fastest(made, "10²")["seconds"][SAM] == 1.0
-        assert peers.fastest(made, "10²", 1e-4)["seconds"][SAM] == 2.0
-        (lost,) = running.rows_of("hertz", {SAM: [timed(10, 1.0, converged=False)]}, lambda _: 1.0)
-        assert math.isnan(lost["error"]) and math.isnan(lost["seconds"]) and lost["status"] == "not converged"
-
 
 def test_what_is_not_there_has_no_ratio():
     """SAM alone, on one grid of the rough patch and two of the sphere."""
@@ -101,12 +78,6 @@ def test_what_is_not_there_has_no_ratio():
     assert "processor time" in plot.caption and plot.drawing.data
 
 
-def script(path: Path, text: str) -> Path:
-    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
-    path.chmod(0o755)
-    return path
-
-
 class TestEnvironment:
     def test_without_the_variable_the_case_is_not_run(self, tmp_path, monkeypatch, capsys):
         monkeypatch.delenv(VARIABLE, raising=False)
@@ -117,11 +88,6 @@ class TestEnvironment:
         monkeypatch.setenv(VARIABLE, str(tmp_path / "none"))
         assert main(["peers"], "full", tmp_path / "out") == 0 and "no such program" in capsys.readouterr().out
 
-    @pytest.mark.parametrize("text", ["exit 3", "echo no"])
-    def test_interpreter_that_does_not_answer(self, tmp_path, text):
-        with pytest.raises(PeersError, match="no Python that answers"):
-            running.installed(script(tmp_path / "python", text))
-
 
 class TestWorker:
     def test_real_child_process(self):
@@ -131,18 +97,6 @@ class TestWorker:
         assert good.solved and good.seconds > 0.0 and good.record["peak_memory_bytes"] > 1e7
         assert good.fields["pressure"].max() == pytest.approx(problems.P0, rel=1e-3)
         assert not bad.solved and "KeyError" in bad.failure and math.isnan(bad.seconds)
-
-    @pytest.mark.parametrize(
-        ("text", "failure"),
-        [
-            ("echo broken >&2; exit 7", "ended with code 7: broken"),
-            ("exec sleep 60", "no answer within 0.2 s"),
-        ],
-    )
-    def test_program_that_dies_or_hangs_is_told(self, tmp_path, text, failure):
-        measurement = Measurement(Job(problems.HERTZ, 48, {}))
-        running.run(TAMAAS, measurement, script(tmp_path / "python", text), allowance=0.2)
-        assert measurement.failure == failure and not measurement.solved and not measurement.wanted(1)
 
 
 def in_process(program, each, python, allowance=0.0):

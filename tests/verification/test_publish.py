@@ -11,7 +11,7 @@ from stored import COARSE
 from test_report import sketch
 
 from samfem import publishing
-from verification.cases.case import Case, Context, Figure, NotDrawnError, Outcome, Plot, with_loading
+from verification.cases.case import Figure, Outcome, Plot
 from verification.judging import Measured
 from verification.runs import models
 from verification.suite import freshness, outcomes, verify
@@ -117,65 +117,6 @@ def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, publi
     before = report_in(tmp_path)
     assert run(tmp_path, store="new") == first and len(published.runs) == 3  # of this code, without a store
     assert [report_in(tmp_path)[key] for key in ("cases", "gates")] == [before["cases"], before["gates"]]
-
-
-class Shared(Case):
-    """A case of hours, of which scenes may be solved ahead."""
-
-    scenes = tuple(with_loading(COARSE, force=share * COARSE.loading.force) for share in (1.0, 1.1))
-
-    def ahead(self, context):
-        return self.scenes
-
-    def solve(self, context):
-        return [context.solve(models.SAM, scene, str(k)) for k, scene in enumerate(self.scenes)]
-
-    def measure(self, found):
-        return {"one": Measured(len(found), 2)}
-
-
-def test_scenes_of_a_long_case_are_solved_ahead_and_the_case_says_their_time(
-    tmp_path, published, monkeypatch, counted
-):
-    cases = {"long": Shared("long", "long", "Is it shared?"), "first": published.case("first")}
-    monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
-    run(tmp_path)
-    order = [name for name, _ in Here.started]
-    assert order == ["first", "long", "long", "long"]  # two scenes, and the case
-    assert counted == 2 * [models.SAM]  # "first" has one of the scenes
-    results = report_in(tmp_path)
-    assert results["cases"][0]["seconds"] > 0.0 and not results["cases"][0]["failure"]
-
-
-class Undrawn(Case):
-    """Its second figure cannot be drawn."""
-
-    def solve(self, context):
-        return None
-
-    def measure(self, found):
-        return {"one": Measured(1.0, 1.0)}
-
-    def figures(self, found):
-        yield Plot(sketch(), "curve", "A curve", "Caption")
-        raise ValueError("no place for a label")
-
-
-def test_of_a_figure_that_cannot_be_drawn_the_rest_and_the_gates_are_published(
-    tmp_path, published, monkeypatch
-):
-    cases = {"first": Undrawn("first", "first", "Is it drawn?"), "second": published.case("second")}
-    monkeypatch.setattr(publishing, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: [row(f"{name}.one") for name in cases])
-    assert {"first-curve.png", "second-curve.png"} <= run(tmp_path, code=1).keys()
-    results = report_in(tmp_path)
-    first, second = results["cases"]
-    assert (first["status"], first["failure"], second["status"]) == ("failed", "", "passed")
-    assert "ValueError: no place for a label (test_publish.py" in first["figures"][1]["findings"][0]
-    assert [gate["status"] for gate in results["gates"]] == ["passed", "passed"]
-    with pytest.raises(NotDrawnError, match="no place for a label"):
-        cases["first"].run(Context("first", tmp_path, "full", print))
 
 
 def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):

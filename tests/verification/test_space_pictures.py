@@ -34,21 +34,14 @@ SCENES = {
         "surface": {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6},
         "loading": {"force": 0.02},
     },
-    "line": {
-        "body": SOFT,
-        "counterbody": {"shape": "cylinder", "radius": 1e-3, "length": 1e-2},
-        "loading": UNLOADED | {"force": 1.5e3},
-    },
 }
 GRIDS = {
     "unloaded": {"grid": {"cells": (17, 17), "extent": (8e-6, 8e-6)}},
     "elastic": {"grid": {"cells": (17, 17)}},
     "yielding": {"grid": {"cells": (33, 33)}},
     "rough": {"grid": {"cells": (16, 16), "extent": (8e-6, 8e-6)}},
-    "line": {"grid": {"cells": (33, 1)}},
 }
 COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}, models.FEM_3D: {"cells_per_radius": 4, "box": 4}}
-COARSE[models.FEM_LINE] = COARSE[models.FEM_3D]
 _FOLDERS: list[TemporaryDirectory] = []
 
 
@@ -98,15 +91,6 @@ def test_pictures_show_what_the_tables_hold(model):
     assert values(picture("mises", "yielding", model)).max() > 0.0
     (mesh, _), *_ = imprint.parts
     assert mesh.points[:, 2].min() / imprint.exaggeration == pytest.approx(1e-3 * imprint.limits[0])
-
-
-@pytest.mark.parametrize("model", [models.SAM, models.FEM_LINE])
-def test_a_long_cylinder_is_drawn_as_long_as_two_widths_of_its_contact(model):
-    """Two half-widths to each side, of cells as wide as the length and of a section alike."""
-    width = 2e6 * found("line", model).run.quantities["contact_half_width_m"]
-    boxes = [picture(kind, "line", model).box for kind in ("contact", "imprint", "plastic-zone")]
-    assert [np.abs(box[1]).max() for box in boxes[:2]] == pytest.approx([width] * 2, rel=0.2)
-    assert 0.9 * width <= boxes[2][1, 1] <= 1.5 * width
 
 
 DIES = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"

@@ -54,14 +54,6 @@ def test_a_range_is_decimal_and_keeps_both_ends(folder):
     assert [point.values[0] for point in content.points] == ["100 mN", "200 mN", "300 mN", "400 mN", "0.5 N"]
 
 
-def test_a_log_range_has_equal_ratios(folder):
-    content = study(folder, '"counterbody.radius" = { log = ["10 um", "1 cm"], count = 7 }')
-    values = np.array(column(content, "counterbody.radius"))
-    np.testing.assert_allclose(values[1:] / values[:-1], np.sqrt(10.0), rtol=1e-12)
-    assert values[[0, 2, 4, 6]].tolist() == [1e-5, 1e-4, 1e-3, 1e-2]
-    assert content.points[1].scene.counterbody.radius == values[1]
-
-
 @pytest.mark.parametrize("mode, size", [("morris", 3), ("sobol", 4), ("uniform", 1)])
 def test_a_design_varies_its_keys_within_their_ends_and_draws_its_blocks_for_each_sample(folder, mode, size):
     vary = '"loading.force" = { log = ["0.1 N", "10 N"] }\n"loading.steps" = { list = [1, 2, 3, 4] }\n'

@@ -3,16 +3,15 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, Status
-from samfem.compared import Uncertain
-from samfem.comparison_page import _uncertainties
+from verification.cases.cost import uncertainty as study
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.runs.models import FEM, FEM_3D, SAM
@@ -298,6 +297,25 @@ def test_depths_without_a_maximum_are_left_out_of_the_others_and_change_nothing(
     assert values and {name: found[name]["values"][-1] for name in values} == values
 
 
+def test_what_a_doubtful_reference_says_does_not_count():
+    """In the case of the uncertainties: one that is known to less than a third of an uncertainty counts."""
+    entry = {"values": [1.0, 1.2, 1.5], "cells": [4, 3, 2], "u_num": 0.3, "u_steps": 0.0, "u_box": 0.0}
+    known, unknown = (study.judged(entry, 1.0, doubt=0.3 / each) for each in (3.1, 2.9))
+    assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
+    assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
+
+
+def test_medians_are_of_quantities_with_three_values():
+    of = {
+        "peeq_max": (2.0, 3.0, 9.0),
+        "p_max_Pa": (4.0, 5.0, 6.0),
+        "few": (1.0, 1.0),
+        study.AREA: (7.0, 8.0, 9.0),
+    }
+    rows = pd.DataFrame([{"quantity": name, "x": each} for name, own in of.items() for each in own])
+    assert study.smallest_median(rows, "x") == 3.0 and study.largest_median(rows, "x") == 5.0
+
+
 # the command
 
 
@@ -369,8 +387,3 @@ def test_what_has_no_coarser_grid_is_refused(sphere, refused, change, words):
     solver = "" if "solver" in change else "[solver]\n"
     (sphere / "asked.toml").write_text(f"{text}{solver}uncertainty = true\n")
     assert words in refused("solve", "asked.toml")
-
-
-def test_a_difference_beyond_both_uncertainties_is_seen():
-    found = SimpleNamespace(uncertain=[Uncertain("p_max_Pa", each, 1.0, 2.0) for each in (3.0, 3.1)])
-    assert [row[-1] for row in _uncertainties(found)["rows"]] == ["True", "False"]

@@ -4,8 +4,6 @@ the module of the same name beside it that it names; without scene and frame tha
 subclasses of `Case` in a tuple `CASES`.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from importlib import import_module

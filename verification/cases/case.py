@@ -14,13 +14,13 @@ from pydantic import BaseModel
 
 from sam.scene import Grid, Progress, Result, Scene, printable, read_scene
 from verification.figures import space
-from verification.judging import Measured
-from verification.rows import LEVELS, CaseFile
+from verification.judging import Measured as Measured
+from verification.rows import LEVELS as LEVELS, CaseFile
 from verification.runs.files import plain, write_atomically, write_run
-from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
+from verification.runs.models import FEM as FEM, FEM_3D as FEM_3D, FEM_LINE as FEM_LINE, SAM as SAM
 from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
-from verification.text.console import number
+from verification.text.console import number as number
 
 if TYPE_CHECKING:  # loaded only where something is drawn or tabulated
     from pandas import DataFrame
@@ -305,25 +305,3 @@ def with_loading(scene: Scene, **keys) -> Scene:
 def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:
     """The scene with another finite-element mesh."""
     return with_keys(scene, "fem", cells_per_radius=cells_per_radius)
-
-
-__all__ = [
-    "FEM",
-    "FEM_3D",
-    "FEM_LINE",
-    "LEVELS",
-    "SAM",
-    "Case",
-    "Context",
-    "Figure",
-    "Measured",
-    "Outcome",
-    "Plot",
-    "SmallTable",
-    "number",
-    "with_body",
-    "with_grid",
-    "with_keys",
-    "with_loading",
-    "with_mesh",
-]

@@ -4,8 +4,6 @@ against the reference, and SAM against finite elements; and the points of its sw
 from the vocabulary.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import reduce

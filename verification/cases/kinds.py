@@ -3,8 +3,6 @@
 both models (`verification.quantities.Solved`). Titles and captions follow from the vocabulary.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
@@ -18,37 +16,38 @@ from verification.compare.measures import SHALLOWEST, Plane, patch_pressure, spo
 from verification.figures.check import COUNTS
 from verification.figures.lines import (
     CYCLES,
+    GIGA,
     LINE_ON_POINTS,
     LOOKS,
     PERCENT,
     PLAIN,
+    POINTS,
     Curve,
-    below_spots,
-    convergence,
     curves,
-    profile_of,
-    refinement,
 )
 from verification.figures.maps import (
+    PLANE_AXES,
     PRESSURE,
+    STRAIN,
     SURFACE_AXES,
     VON_MISES,
+    VON_MISES_LEVELS,
     FieldPair,
-    compared_mises,
-    compared_peeq,
-    compared_planes,
-    compared_pressure,
+    in_body,
+    iso_levels,
+    peak_at,
+    plane_maps,
     pressure_maps,
     rough_pressures,
-    sliding_sections,
+    section_pair,
 )
-from verification.figures.profiles import Profile, axis_profiles, profiles, residual_surface
+from verification.figures.profiles import Profile, against_fem, profiles, residual_surface
 from verification.figures.style import BLACK, Drawing
 from verification.quantities import Solved, ladders, of_passes, planes, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
-from verification.runs.sampling import peak, pressure_map, rows_of
+from verification.runs.sampling import peak, plane_field, pressure_map, pressure_on, rows_of
 from verification.runs.tables import contact_size
 
 COLUMNS = {
@@ -61,6 +60,7 @@ COLUMNS = {
 }
 """Table and column -> title, label, unit of the reference that it is divided by."""
 UNITS = {"p0": "$p_0$", "approach": r"$\delta$"}
+BOTH_MODELS = ("SAM", "FEM")
 MANY = 30
 """Points: a curve of more has no marks."""
 
@@ -119,16 +119,36 @@ def _exact_maps(found: Solved) -> Plot:
     return Plot(pressure_maps(pair), "pressure-maps", "Contact pressure", words)
 
 
+CLEAR = 0.25
+"""Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
+
+
 def _peeq_maps(found: Solved) -> Drawing:
-    return compared_peeq(*found.results.values(), contact_of(found.scene).contact_radius)
+    """In %; the bar is the contact of FEM."""
+    (sam, fem), a = found.results.values(), contact_of(found.scene).contact_radius
+    pair, peaks = section_pair(sam, fem, "peeq", (a, 1.0 / PERCENT))
+    pair = replace(pair, semi_axes=(edge := contact_size(fem.quantities) / a, edge))
+    return plane_maps(pair, peaks, iso_levels(max(each.value for each in peaks)))
 
 
 def _plastic_axis(found: Solved) -> Plot:
-    drawing = axis_profiles(*found.results.values(), contact_of(found.scene).contact_radius)
+    """Plastic strain and von Mises stress at the peak, von Mises and lateral stress after unloading."""
+    wanted = (
+        ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
+        ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),
+        ("Von Mises, unloaded", r"$\sigma_\mathrm{vM}$ [GPa]", "unloaded", "mises_Pa", GIGA),
+        ("Residual lateral stress", r"$\sigma_{xx}$ [GPa]", "unloaded", "sxx_Pa", GIGA),
+    )
+    panels, a = [], contact_of(found.scene).contact_radius
+    for title, label, state, column, unit in wanted:
+        read = (rows_of(each.tables["axis"], state, "z_m", column) for each in found.results.values())
+        both = ((z / a, unit * values) for z, values in read)
+        panels.append(against_fem((title, "depth $z/a$", label), *both, (0.0, 2.0)))
     words = (
         "The curves compare SAM with FEM on the axis: plastic strain and von Mises stress at the peak, von "
         "Mises and lateral stress after unloading; the differences are shown underneath."
     )
+    drawing = profiles(panels, reference="FEM")
     return Plot(drawing, "axis", "Under the centre, at the peak and unloaded", words)
 
 
@@ -142,21 +162,29 @@ def _residual_surface(found: Solved) -> Plot:
 
 
 def _pressure_maps(found: Solved) -> Drawing:
-    """To 1.3 a; where the body yields to the contact of FEM."""
-    elastic, (sam, fem) = contact_of(found.scene), found.results.values()
-    a, p0 = elastic.contact_radius, elastic.peak_pressure
-    if not found.scene.body.plasticity:
-        return compared_pressure(sam, fem.tables, a, p0)
-    edge = contact_size(fem.quantities) / a
-    return compared_pressure(sam, fem.tables, a, p0, reach=1.2 * max(edge, 1.0), edge=edge, power=1)
+    """p/p0 over x/a and y/a, to 1.3 a; where the body yields to the contact of FEM."""
+    elastic, (sam, fem), yields = contact_of(found.scene), found.results.values(), found.scene.body.plasticity
+    a, p0, edge, reach = elastic.contact_radius, elastic.peak_pressure, 1.0, 1.3
+    if yields:
+        edge = contact_size(fem.quantities) / a
+        reach = 1.2 * max(edge, 1.0)
+    x, y, p = pressure_map(sam)
+    x, y, p = x[near := np.abs(x) <= reach * a], y[close := np.abs(y) <= reach * a], p[np.ix_(near, close)]
+    fields = p / p0, pressure_on(x, y, fem.tables, 1 if yields else 2) / p0
+    return pressure_maps(FieldPair(x / a, y / a, *fields, BOTH_MODELS, SURFACE_AXES, PRESSURE, (edge, edge)))
 
 
 def _mises_maps(found: Solved) -> Drawing:
-    units = found.reference.units["a"], found.reference.units["p0"]
-    if not (film := found.scene.body.coating):
-        return compared_mises(*found.results.values(), *units)
-    element = coated_contact(found.scene).bare.contact_radius / found.scene.fem.cells_per_radius
-    return compared_mises(*found.results.values(), *units, film=film.thickness, element=element)
+    """Over p0. Between the last Gauss points above and below the interface of a film, within CLEAR of an
+    element, no stress of FEM is known on either side: nothing is drawn there.
+    """
+    a, p0 = found.reference.units["a"], found.reference.units["p0"]
+    clear = interface = None
+    if film := found.scene.body.coating:
+        element = coated_contact(found.scene).bare.contact_radius / found.scene.fem.cells_per_radius
+        clear, interface = (film.thickness, CLEAR * element), film.thickness / a
+    pair, peaks = section_pair(*found.results.values(), "mises", (a, p0), clear=clear)
+    return plane_maps(pair, peaks, VON_MISES_LEVELS, interface=interface)
 
 
 def _spot_pressures(found: Solved) -> Plot:
@@ -173,17 +201,21 @@ def _spot_pressures(found: Solved) -> Plot:
 def _spot_strains(found: Solved) -> Plot:
     """Over depth below the centre of each spot: SAM as a line, FEM at its points."""
     sam, fem = found.results.values()
-    both, panels = (Plane.of(sam.tables), Plane.of(fem.tables)), {}
+    both, panels, shade = (Plane.of(sam.tables), Plane.of(fem.tables)), {}, {}
     depths = np.linspace(both[0].z[0], 2e-6, 100), both[1].z[both[1].z <= 2e-6]
     for spot in spots(sam.tables, fem.tables):
-        first = strain_below(found.scene, sam, fem, spot)[0][0]
-        curves_of = [(z, each.below(spot.x, z)) for z, each in zip(depths, both, strict=True)]
-        panels[f"x = {spot.x * 1e6:.2f} µm"] = (*curves_of, first)
+        title = f"x = {spot.x * 1e6:.2f} µm"
+        panels[title] = {
+            name: Curve(1e6 * z, PERCENT * each.below(spot.x, z))
+            for name, z, each in zip(("SAM", "FEM"), depths, both, strict=True)
+        }
+        shade[title] = 0.0, 1e6 * strain_below(found.scene, sam, fem, spot)[0][0]
     words = (
         "The curves compare the plastic strain below each spot in y = 0 at peak load by SAM and by FEM; in "
         "the grey range, too near the surface, nothing is compared."
     )
-    return Plot(below_spots(panels), "strain", "Plastic strain below the spots", words)
+    drawing = curves(panels, "depth $z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
+    return Plot(drawing, "strain", "Plastic strain below the spots", words)
 
 
 def _residual_line(found: Solved) -> Plot:
@@ -200,12 +232,17 @@ def _residual_line(found: Solved) -> Plot:
 
 def _mises_below_film(found: Solved) -> Plot:
     hertz, thickness = contact_of(found.scene), found.scene.body.coating.thickness
-    units = hertz.contact_radius, hertz.peak_pressure
+    (sam, fem), a, p0 = found.results.values(), hertz.contact_radius, hertz.peak_pressure
+    x, z, own = plane_field(sam.tables, "mises_Pa")
+    use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)
+    x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
+    fields, edge = (own / p0, in_body(fem, x, z, thickness) / p0), contact_size(fem.quantities) / a
+    pair = FieldPair(x / a, z / a, *fields, BOTH_MODELS, PLANE_AXES, VON_MISES, (edge, edge))
+    drawn = plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
     words = (
         "The maps compare the von Mises stress of the body from the lower face of its film on, by SAM and by "
         "FEM, which is linear between that face and the centres of the elements below."
     )
-    drawn = sliding_sections(*found.results.values(), units, thickness)
     return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words)
 
 
@@ -213,11 +250,22 @@ TOO_NEAR = "Near the surface, where the strain depends on the mesh, nothing is c
 
 
 def _strain_planes(found: Solved) -> Plot:
-    """Plastic strain in y = 0 of SAM and the three-dimensional elements, to the depth that is compared."""
-    both = planes(found)
-    a, fem = found.reference.units["a"], found.results["fem"]
-    edge = contact_size(fem.quantities) / a if found.scene.counterbody else 1.0
-    drawing = compared_planes(both["sam"], both["fem"], ("SAM", "FEM"), edge, strip=SHALLOWEST)
+    """Plastic strain in y = 0 of SAM and the three-dimensional elements, with iso-lines, among them that of
+    0.2 %. The maxima are those below the strip in which nothing is compared; what it holds is said beside
+    them.
+    """
+    both, peaks = planes(found), []
+    a, sam, fem = found.reference.units["a"], both["sam"], both["fem"]
+    edge = contact_size(found.results["fem"].quantities) / a if found.scene.counterbody else 1.0
+    x, z = sam.x[np.abs(sam.x) <= 1.6], sam.z[sam.z <= 1.4]
+    fields = tuple(PERCENT * plane.at(x, z) for plane in (sam, fem))
+    pair, below = FieldPair(x, z, *fields, BOTH_MODELS, PLANE_AXES, STRAIN, (edge, edge)), z >= SHALLOWEST
+    for field in fields:
+        largest, anywhere = peak_at(x, z[below], field[:, below]), np.nanmax(field)
+        inside = f", {anywhere:#.3g} % in it" if anywhere > largest.value else ""
+        peaks.append(replace(largest, words=f"max {largest.value:#.3g} % below the strip{inside}"))
+    levels = iso_levels(max(each.value for each in peaks))
+    drawing = plane_maps(pair, peaks, levels, strip=SHALLOWEST)
     words = (
         "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. "
         f"{TOO_NEAR} (hatched)."
@@ -235,12 +283,11 @@ def _strain_profiles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Pl
         panels = {}
         for variant, runs in fields.items():
             x = runs["fem"].place_of_maximum() if name == "column" else 0.0
-            order = ("fem", *(run for run in runs if run != "fem"))
-            panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {
-                run.upper() if run in ("sam", "fem") else f"SAM, {run}": profile_of(runs[run], x, DEEP)
-                for run in order
-                if run in ("sam", "fem") or f"SAM, {run}" in LOOKS
-            }
+            panel = panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {}
+            for run in ("fem", *(run for run in runs if run != "fem")):
+                label, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
+                if label in LOOKS:
+                    panel[label] = Curve(z[z <= DEEP], PERCENT * runs[run].below(x, z[z <= DEEP]))
         drawing = curves(panels, "depth $z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
         text = (
             "The curves compare the plastic strain in y = 0 at the peak by FEM, SAM and other forms of SAM. "
@@ -352,40 +399,55 @@ def of_kind(kind: str, found: Solved) -> Plot:
 
 def _orders(file: CaseFile, frame: DataFrame) -> Plot:
     """The errors of each refinement over the size of the cells, with the orders that rows take of them."""
-    panels: dict[str, dict[str, tuple]] = {}
+    panels: dict[str, dict[str, Curve]] = {}
     fits: list[str] = []
     for (name, model), rows in frame[frame["model"] != BOTH].groupby(["sweep", "model"], sort=False):
         sweep, title = file.sweeps[name], LABELS[model]
-        if not sweep.size:
-            continue
-        errors = [column for column, how in sweep.columns.items() if how not in ("value", "between")]
-        curves = {
-            words_of(file, c): (rows["h"].to_numpy(), rows[c].to_numpy(), fitted(file, rows, c))
-            for c in errors
-        }
-        panels[title] = panels.get(title, {}) | curves
-        fits += [f"{title} {words} {order.exponent:.2f}" for words, (*_, order) in curves.items() if order]
+        for column in (
+            c for c, how in sweep.columns.items() if sweep.size and how not in ("value", "between")
+        ):
+            order, words = fitted(file, rows, column), words_of(file, column)
+            said = f"order {order.exponent:.2f}" if order else ""
+            look = {} if order else {"linestyle": "none"}
+            line = Curve(rows["h"].to_numpy(), rows[column].to_numpy(), order, said, look=look)
+            panels.setdefault(title, {})[words] = line
+            fits += [f"{title} {words} {order.exponent:.2f}"] if order else []
+    how = {"logarithmic": "xy", "ticks": lambda h: f"a/{1.0 / h:.3g}", "legend": "each", "size": (4.4, 3.9)}
+    drawing = curves(panels, "cell size", "relative error", **how)
     said = f"Observed orders: {', '.join(fits)}."
     text = f"The figure shows the errors over the cell size h; the lines are fits error ~ hᵐ. {said}"
-    return Plot(convergence(panels), "orders", "Error against cell size", text)
+    return Plot(drawing, "orders", "Error against cell size", text)
 
 
 def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
     """A strain over the size of what each sweep refines, with the limit of each model."""
-    panels, labels, off = {}, {}, []
+    panels: dict[str, dict[str, Curve]] = {}
+    labels, off = {}, []
     for name, rows in frame[frame["model"] != BOTH].groupby("sweep", sort=False):
-        models = rows.groupby("model", sort=False)
-        points = {LABELS[model]: (own["h"].to_numpy(), own[column].to_numpy()) for model, own in models}
-        panels[name] = {model: (h, v, extrapolate(h, v)) for model, (h, v) in points.items()}
-        labels[name] = "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
-        sam, fem = (limit for *_, limit in panels[name].values())
-        if sam.observed and fem.observed:
-            off.append(f"{1e2 * (sam.limit / fem.limit - 1.0):+.2f} % ({name})")
+        panel, limits = panels.setdefault(name.capitalize(), {}), []
+        labels[name.capitalize()] = (
+            "1 / load steps" if file.sweeps[name].size == "step" else "cell or element size / a"
+        )
+        for model, own in rows.groupby("model", sort=False):
+            h, strain, label = own["h"].to_numpy(), PERCENT * own[column].to_numpy(), LABELS[model]
+            limits.append(limit := extrapolate(h, own[column].to_numpy()))
+            if not limit.observed:
+                panel[label] = Curve(h, strain, note="no order observed", look={"linestyle": "none"})
+                continue
+            fit = lambda at, limit=limit: PERCENT * limit(at)  # noqa: E731
+            panel[label] = Curve(h, strain, fit, f"order {limit.order:.2f}", (0.0, h.max()))
+            look = POINTS[label] | {"marker": "D", "markersize": 5, "linestyle": "none", "clip_on": False}
+            panel[f"{label}, limit"] = Curve(np.zeros(1), np.array([PERCENT * limit.limit]), look=look)
+        if all(limit.observed for limit in limits):
+            off.append(f"{1e2 * (limits[0].limit / limits[1].limit - 1.0):+.2f} % ({name})")
     words, said = words_of(file, column), f" The limit of SAM is off that of FEM by {', '.join(off)}."
+    drawing = curves(panels, labels, f"{words} [%]", looks=POINTS, legend="each", size=(4.2, 3.4))
+    for axis in drawing.figure.axes:
+        axis.set_xlim(0.0, None)
     text = f"The figure shows the {words} of both models under refinement; the lines are fits limit + c hᵐ"
     text += ", drawn where an order is observed." + said * bool(off)
     title = f"{words[0].upper()}{words[1:]} under refinement"
-    return Plot(refinement(panels, labels, f"{words} [%]"), "refinement", title, text)
+    return Plot(drawing, "refinement", title, text)
 
 
 def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | None:

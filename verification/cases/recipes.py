@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What a case may change of its scene beside single keys, `vary = {NAME = value}`."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module

@@ -7,8 +7,6 @@ refined), the columns of the file with `NAME value` and `NAME expected` beside e
 result. The function that a case names as `frame` returns such rows as mappings.
 """
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping

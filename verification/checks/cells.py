@@ -7,8 +7,6 @@ reciprocity with the stress of a point force on the surface (Maysel): u_z(x) = i
 a unit force at x over the plastic cells.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from itertools import pairwise

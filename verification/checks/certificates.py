@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What is checked of a solution in each model: condition -> value, see `verification.checks`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import groupby, pairwise
 

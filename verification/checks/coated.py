@@ -7,8 +7,6 @@ body below adds, Hankel integrals of the compliances of `CoatedHalfSpace` less t
 smooth over the film's thickness: a few points in each cell do.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.special import j0, j1

@@ -8,8 +8,6 @@ those of FEM see `axisymmetric` and `spatial` beside it, for displacements of SA
 nothing else is said.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 

@@ -5,8 +5,6 @@ Its plastic strain by `closed_forms.film_flow`, six strains and a root search in
 surface below it linearly from the two uppermost layers, elastic by Hooke's law plus plastic.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ returned.
 Components in the order 11 22 33 23 13 12, no engineering shear; every value is zero in an exact solution.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

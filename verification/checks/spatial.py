@@ -7,8 +7,6 @@ the elements (Hughes, Int. J. Numer. Methods Engrg. 15 (1980) 1413); as in `veri
 One cycle, traction along +x.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

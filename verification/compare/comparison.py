@@ -6,8 +6,6 @@ between the surface and the first depth of SAM are left out: nothing is extrapol
 results (`sam.scene.Result`) or runs read back (`verification.runs.files.Run`).
 """
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -6,8 +6,6 @@ a the contact radius of FEM; "relative L2" sqrt(sum w (sam - fem)^2 / sum w fem^
 and fem hold the root mean squares.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ Bosman & Schipper (2011) leave the chemical film out of the normal contact, beca
 changes pressure and stress by less than 5 % (Table 1, Fig. 3).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass, replace
 

@@ -9,8 +9,6 @@ companions of the next. Nothing is solved that needs more memory than the machin
 together with what was solved before.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil, inf, sqrt

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The elastic contact that is expected of a scene: estimated before a solve, by Hertz beside a result."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import inf, pi, prod, sqrt
 from typing import Any

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from math import prod, sqrt
 from typing import Any
 
-from sam.scene import NO_FORCE, Scene, Stage, printable
+from sam.scene import NO_FORCE, Grid, Scene, Stage, printable
 from verification.cost import estimates
 from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_of, table
@@ -157,7 +158,7 @@ def plan(scene: Scene, model: str | None = None) -> Plan:
         "models": entries,
         "advice": advice,
         "model_range": of_model,
-        "warnings": [*_off(of_model, contact.get("a_over_R")), *_warnings(entries)],
+        "warnings": [*_off(of_model, contact.get("a_over_R")), *_warnings(scene, entries)],
     }
     return Plan(content, model or (usable or [models.SAM])[0])
 
@@ -242,7 +243,7 @@ def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
     return [*outside, *([in_a_sentence(off, like)] if off else [])]
 
 
-def _warnings(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+def _warnings(scene: Scene, entries: Sequence[Mapping[str, Any]]) -> list[str]:
     """Coarse grids, and what a machine or a command would not begin."""
     found = []
     for entry in (each for each in entries if each["available"]):
@@ -252,7 +253,8 @@ def _warnings(entries: Sequence[Mapping[str, Any]]) -> list[str]:
         none = [each for each in entry["stages"] if each["stage"] == UNCERTAINTY and not each["runs"]]
         found += [f"{model}: no uncertainty: {each['reason']}" for each in none]
         if (most := memory_bytes()) and needs["memory_bytes"] > most:
-            found.append(f"{model}: this machine has {with_prefix(most, 'B')} of memory")
+            fits = _fitting(scene, model, most)
+            found.append(f"{model}: this machine has {with_prefix(most, 'B')} of memory{fits}")
         if needs["time_s"] > LONGEST:
             found.append(f"{model}: more than a day, begun with --anyway only")
     return found
@@ -324,6 +326,7 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
         raise models.ModelError(
             f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
+            + _fitting(scene, model, available)
         )
     if anyway:
         return made
@@ -342,6 +345,21 @@ def _fewer(scene: Scene) -> str:
     return ", " * any(count > 1 for count in given.values()) + " or ".join(
         f"loading.{key} = {count}" for key, count in given.items() if count > 1
     )
+
+
+def _fitting(scene: Scene, model: str, available: float) -> str:
+    """What would fit in SAM, half as many cells each way or half of those, and its memory."""
+    from sam import choose_grid
+
+    grid = choose_grid(scene)
+    for share in (2, 4, 8, 16) if model == models.SAM else ():
+        cells = grid.nx // share, max(grid.ny // share, 1)
+        fewer = (scene.grid or Grid()).model_copy(update={"cells": cells})
+        with suppress(ValueError):  # of heights that cannot be had so coarse
+            needed = estimates.estimate(scene.model_copy(update={"grid": fewer}), model).memory_bytes
+            if needed <= available:
+                return f"; grid.cells = {list(cells)} would take {with_prefix(needed, 'B')}"
+    return ""
 
 
 def _smaller(scene: Scene, model: str) -> str:

@@ -7,8 +7,6 @@ between two of its points, the last whose error is above t and the next, behind 
 Between the two it is interpolated linearly in the logarithms. No bracket, no time: nothing is extrapolated.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -9,8 +9,6 @@ imported by the modules here only, which whoever draws loads on use.
 `compared`, `fit`, `sweep`, `work_precision`: of comparisons, fits, sweeps, and error over time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any

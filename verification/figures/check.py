@@ -6,8 +6,6 @@ two numbers, whole ones where it counts; every look of a line is in a legend or 
 colour bar stands beside the panel that it is of; no name of a variable of the code is written.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 

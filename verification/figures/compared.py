@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Figures of a comparison: the curves of both models, and of data of the user, at peak load."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import cycle
 from pathlib import Path

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figure of a fit: its tests with the model, their residuals, and the yield curve with its band."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from verification.figures.style import BLACK, BLUE, VERMILION, Columns, Drawing, sheet, zero_line

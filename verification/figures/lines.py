@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Lines over x by series and panel, with points, fits and bounds: `curves`, and figures of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import cycle
@@ -16,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from verification.compare.measures import Plane
 from verification.figures.style import (
     BLACK,
     BLUE,
@@ -32,7 +29,6 @@ from verification.figures.style import (
     log_ticks,
     sheet,
 )
-from verification.reference.convergence import Limit, Power
 
 MICRO, GIGA, PERCENT = 1e6, 1e-9, 1e2
 POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"marker": "x"}}
@@ -260,61 +256,6 @@ def of_programs(
     return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
 
 
-def convergence(panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Power | None]]]) -> Drawing:
-    """log-log error against cell size; panels: title -> quantity -> (h/a, relative error, order or None)."""
-    drawn = {
-        title: {
-            name: Curve(h, error, order, f"order {order.exponent:.2f}")
-            if order
-            else Curve(h, error, look={"linestyle": "none"})
-            for name, (h, error, order) in own.items()
-        }
-        for title, own in panels.items()
-    }
-    how = {"logarithmic": "xy", "ticks": lambda h: f"a/{1.0 / h:.3g}", "legend": "each", "size": (4.4, 3.9)}
-    return curves(drawn, "cell size", "relative error", **how)
-
-
-def refinement(
-    panels: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray, Limit]]],
-    xlabels: Mapping[str, str],
-    ylabel: str,
-) -> Drawing:
-    """Strains in % over h, to the limit at h = 0; panels: title -> "SAM" or "FEM" -> (h, strain, limit)."""
-    drawn: dict[str, dict[str, Curve]] = {}
-    for title, own in panels.items():
-        panel = drawn[title.capitalize()] = {}
-        for name, (h, strain, limit) in own.items():
-            if not limit.observed:
-                panel[name] = Curve(h, PERCENT * strain, note="no order observed", look={"linestyle": "none"})
-                continue
-            fit = lambda at, limit=limit: PERCENT * limit(at)  # noqa: E731
-            panel[name] = Curve(h, PERCENT * strain, fit, f"order {limit.order:.2f}", (0.0, h.max()))
-            look = POINTS[name] | {"marker": "D", "markersize": 5, "linestyle": "none", "clip_on": False}
-            panel[f"{name}, limit"] = Curve(np.zeros(1), np.array([PERCENT * limit.limit]), look=look)
-    words = {title.capitalize(): label for title, label in xlabels.items()}
-    drawing = curves(drawn, words, ylabel, looks=POINTS, legend="each", size=(4.2, 3.4))
-    for axis in drawing.figure.axes:
-        axis.set_xlim(0.0, None)
-    return drawing
-
-
-def profile_of(plane: Plane, x: float, deep: float) -> Curve:
-    """Plastic strain in % over depth at x, at the own depths of a result."""
-    z = plane.z[plane.z <= deep]
-    return Curve(z, PERCENT * plane.below(x, z))
-
-
-def below_spots(spots: Mapping[str, tuple]) -> Drawing:
-    """Plastic strain over depth: title -> (z in m, strain) of SAM, of FEM, and depth of comparison."""
-    panels, shade = {}, {}
-    for title, (*models, compared) in spots.items():
-        named = zip(("SAM", "FEM"), models, strict=True)
-        panels[title] = {name: Curve(MICRO * z, PERCENT * strain) for name, (z, strain) in named}
-        shade[title] = (0.0, MICRO * compared)
-    return curves(panels, "depth $z$ [µm]", "plastic strain [%]", shade, looks=LINE_ON_POINTS)
-
-
 LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
@@ -351,23 +292,6 @@ def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: 
     drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
     drawing.figure.axes[0].set_ylim(bottom=0.0)
     return drawing
-
-
-def coverage(panels: Mapping[str, Sequence[tuple[str, str, float, float]]]) -> Drawing:
-    """Uncertainty over true error: rule -> (scene, quantity, relative error, relative uncertainty) each."""
-    data, drawn = Columns("rule", "scene", "quantity", "error_percent", "uncertainty_percent"), {}
-    for title, points in panels.items():
-        scenes, quantities, errors, bounds = map(np.array, zip(*points, strict=True))
-        errors, bounds = PERCENT * errors, PERCENT * bounds
-        data.add(title, scenes.tolist(), quantities.tolist(), errors, bounds)
-        ends = np.array([errors.min(), bounds.max()])
-        even = {"color": BLACK, "linewidth": 1.0}
-        drawn[title] = {
-            "a quantity of a problem": Curve(errors, bounds, look={"linestyle": "none", "markersize": 3.0}),
-            "uncertainty = error": Curve(ends, ends, look=PLAIN | even),
-        }
-    how = {"logarithmic": "xy", "legend": "each", "size": (4.0, 3.8)}
-    return Drawing(curves(drawn, "true error [%]", "stated uncertainty [%]", **how).figure, data)
 
 
 def over_cycles(

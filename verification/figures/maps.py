@@ -19,11 +19,9 @@ from matplotlib.ticker import MaxNLocator
 from scipy.interpolate import RegularGridInterpolator
 
 from sam.scene import Result
-from verification.compare.measures import Plane
 from verification.figures.places import edges_of
 from verification.figures.style import BLACK, GREY, Drawing, new_figure, style
-from verification.runs.sampling import Tables, plane_field, plane_field_on, pressure_map, pressure_on
-from verification.runs.tables import contact_size
+from verification.runs.sampling import plane_field, plane_field_on
 
 SHOWN_SHARE = 0.995
 """Share of the points whose difference lies within the colour limits."""
@@ -98,18 +96,13 @@ def pressure_maps(pair: FieldPair) -> Drawing:
         names = [Patch(color=GREY, label="no contact")]
         if any(pair.semi_axes):
             for panel in axes:
-                mark_outline(panel, pair.semi_axes)
+                width, height = 2.0 * pair.semi_axes[0], 2.0 * pair.semi_axes[1]
+                panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=BLACK, **_OUTLINE))
             names.append(
                 Line2D([], [], color=BLACK, linestyle="--", linewidth=1.0, label="edge of the contact")
             )
         name_marks(figure, names)
     return Drawing(figure, pair.data())
-
-
-def mark_outline(panel: Axes, semi_axes: tuple[float, float]) -> None:
-    """The edge of the contact, dashed."""
-    width, height = 2.0 * semi_axes[0], 2.0 * semi_axes[1]
-    panel.add_patch(Ellipse((0.0, 0.0), width, height, edgecolor=BLACK, **_OUTLINE))
 
 
 def name_marks(figure: Figure, handles: Sequence[Artist]) -> None:
@@ -131,7 +124,7 @@ def plane_maps(
         mark_levels(bar, levels)
         axes[0].invert_yaxis()  # shared by all panels
         for panel in axes:
-            mark_contact(panel, pair.semi_axes[0])
+            mark_spots(panel, [(-pair.semi_axes[0], pair.semi_axes[0])])
         unit = " %" * pair.quantity.endswith("[%]")
         for panel, field, peak in zip(axes[:2], (pair.first, pair.second), peaks, strict=True):
             iso_lines(panel, (pair.u, pair.v), field, levels)
@@ -240,11 +233,6 @@ def outline(panel: Axes, x: np.ndarray, y: np.ndarray, inside: np.ndarray, **loo
     panel.add_collection(LineCollection(sides, **look), autolim=False)
 
 
-def mark_contact(panel: Axes, half_width: float) -> None:
-    """A bar over a contact around the origin, at the top edge."""
-    mark_spots(panel, [(-half_width, half_width)])
-
-
 def mark_spots(panel: Axes, spots: Sequence[tuple[float, float]]) -> None:
     """A bar over each spot of a contact, (first, last) on the horizontal axis, at the top edge."""
     for first, last in spots:
@@ -263,20 +251,6 @@ VON_MISES = r"von Mises stress $\sigma_\mathrm{vM}/p_0$"
 SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
 PERCENT, MICRO, GIGA = 1e2, 1e6, 1e-9
 LINE = 0.2  # %: the proof strain of tensile tests
-CLEAR = 0.25
-"""Of an element; the Gauss points of eight-node elements are 0.21 of it from its edges."""
-
-
-def compared_pressure(
-    sam: Result, fem: Tables, a: float, p0: float, *, reach: float = 1.3, edge: float = 1.0, power: int = 2
-) -> Drawing:
-    """p/p0 over (x/a, y/a) to `reach`: SAM | FEM | difference; edge: radius in a; power: see pressure_on."""
-    x, y, p = pressure_map(sam)
-    use_x, use_y = np.abs(x) <= reach * a, np.abs(y) <= reach * a
-    x, y, p = x[use_x], y[use_y], p[np.ix_(use_x, use_y)]
-    fields = (p / p0, pressure_on(x, y, fem, power) / p0)
-    names, axes = ("SAM", "FEM"), SURFACE_AXES
-    return pressure_maps(FieldPair(x / a, y / a, *fields, names, axes, PRESSURE, (edge, edge)))
 
 
 def rough_pressures(
@@ -289,26 +263,7 @@ def rough_pressures(
     return pressure_maps(pair)
 
 
-def compared_mises(
-    sam: Result, fem: Result, a: float, p0: float, *, film: float | None = None, element: float = 0.0
-) -> Drawing:
-    """Von Mises stress over p0 in y = 0: SAM | FEM | difference. film: its thickness, element: size of the
-    elements there, both in m. Between the last Gauss points above and below the interface, within CLEAR of an
-    element, no stress of FEM is known on either side: nothing is drawn there.
-    """
-    clear = None if film is None else (film, CLEAR * element)
-    pair, peaks = _both(sam, fem, "mises", (a, p0), clear=clear)
-    return plane_maps(pair, peaks, VON_MISES_LEVELS, interface=film / a if film else None)
-
-
-def compared_peeq(sam: Result, fem: Result, a: float) -> Drawing:
-    """Plastic strain in % in y = 0: SAM | FEM | difference; a: elastic radius in m; bar: contact of FEM."""
-    pair, peaks = _both(sam, fem, "peeq", (a, 1.0 / PERCENT))
-    pair = replace(pair, semi_axes=(edge := contact_size(fem.quantities) / a, edge))
-    return plane_maps(pair, peaks, iso_levels(max(peak.value for peak in peaks)))
-
-
-def _both(
+def section_pair(
     sam: Result,
     fem: Result,
     name: str,
@@ -336,18 +291,6 @@ def _both(
     return FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), axes, label), peaks
 
 
-def sliding_sections(sam: Result, fem: Result, units: tuple[float, float], thickness: float) -> Drawing:
-    """Von Mises stress over p0 in y = 0, below the film: SAM | FEM | difference. units: a in m, p0 in Pa."""
-    a, p0 = units
-    x, z, own = plane_field(sam.tables, "mises_Pa")
-    use_x, use_z = np.abs(x) <= 1.5 * a, (z >= thickness * (1.0 - 1e-9)) & (z <= 1.4 * a)
-    x, z, own = x[use_x], z[use_z], own[np.ix_(use_x, use_z)]
-    fields = own / p0, in_body(fem, x, z, thickness) / p0
-    edge = contact_size(fem.quantities) / a
-    pair = FieldPair(x / a, z / a, *fields, ("SAM", "FEM"), PLANE_AXES, VON_MISES, (edge, edge))
-    return plane_maps(pair, [peak_at(x / a, z / a, field) for field in fields], VON_MISES_LEVELS)
-
-
 def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.ndarray:
     """(nx, nz) von Mises stress of `fem-3d` in y = 0 below the film, linear; NaN above its first depth."""
     u, w, values = plane_field(fem.tables, "mises_Pa")
@@ -355,25 +298,6 @@ def in_body(fem: Result, x: np.ndarray, z: np.ndarray, thickness: float) -> np.n
     body = w >= thickness
     at = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
     return RegularGridInterpolator((u, w[body]), values[:, body], bounds_error=False)(at)
-
-
-def compared_planes(
-    first: Plane, second: Plane, names: tuple[str, str], edge: float, *, strip: float = 0.0
-) -> Drawing:
-    """Plastic strain in % in y = 0: first | second | difference, with iso-lines, among them that of 0.2 %.
-    edge: contact radius in that of the elastic contact, for the bar over the maps; strip: depth down to which
-    nothing is compared; the maxima are those below it, and what the strip holds is said beside them.
-    """
-    x, z = first.x[np.abs(first.x) <= 1.6], first.z[first.z <= 1.4]
-    fields = tuple(PERCENT * plane.at(x, z) for plane in (first, second))
-    pair, below, peaks = FieldPair(x, z, *fields, names, PLANE_AXES, STRAIN, (edge, edge)), z >= strip, []
-    for field in fields:
-        peak, anywhere = peak_at(x, z[below], field[:, below]), np.nanmax(field)
-        inside = f", {anywhere:#.3g} % in it" if anywhere > peak.value else ""
-        words = f"max {peak.value:#.3g} %" + f" below the strip{inside}" * bool(strip)
-        peaks.append(replace(peak, words=words))
-    largest = max(peak.value for peak in peaks)
-    return plane_maps(pair, peaks, iso_levels(largest), strip=strip)
 
 
 def peak_at(x: np.ndarray, z: np.ndarray, field: np.ndarray) -> MapPeak:

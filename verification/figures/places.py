@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Where the contact of a finished run is, and the plane through its largest pressure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Curves against a closed form or FEM, with the errors underneath."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -10,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sam.scene import Result
-from verification.figures.lines import GIGA, MICRO, PERCENT, POINTS
+from verification.figures.lines import MICRO, PERCENT, POINTS
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.style import EXACT, FEM, SAM, Columns, Drawing, new_figure, sheet, style, zero_line
 from verification.reference.hertz import CircularContact
@@ -89,26 +87,7 @@ def draw_profile(axes: tuple[Axes, Axes], panel: Profile, reference: str, rows: 
     lower.set(xlabel=panel.xlabel, ylabel=f"{word}\n[% of {panel.scale_name}]")
 
 
-def axis_profiles(sam: Result, fem: Result, a: float, deep: float = 2.0) -> Drawing:
-    """Under the centre: plastic strain and von Mises at the peak, von Mises and lateral stress after."""
-    wanted = (
-        ("Plastic strain", "plastic strain [%]", "peak", "peeq", PERCENT),
-        ("Von Mises, at the peak", r"$\sigma_\mathrm{vM}$ [GPa]", "peak", "mises_Pa", GIGA),
-        ("Von Mises, unloaded", r"$\sigma_\mathrm{vM}$ [GPa]", "unloaded", "mises_Pa", GIGA),
-        ("Residual lateral stress", r"$\sigma_{xx}$ [GPa]", "unloaded", "sxx_Pa", GIGA),
-    )
-    panels = []
-    for title, label, state, column, unit in wanted:
-        read = (rows_of(r.tables["axis"], state, "z_m", column) for r in (sam, fem))
-        panels.append(
-            _against_fem((title, "depth $z/a$", label), *((z / a, unit * v) for z, v in read), (0.0, deep))
-        )
-    return profiles(panels, reference="FEM")
-
-
-def _against_fem(
-    labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]
-) -> Profile:
+def against_fem(labels: tuple[str, str, str], sam: tuple, fem: tuple, limits: tuple[float, float]) -> Profile:
     """SAM over the curve of FEM, errors in % of the largest value of FEM. labels: title, of x and of y."""
     x, y = fem
     limits = (max(limits[0], x.min()), min(limits[1], x.max()))
@@ -123,7 +102,7 @@ def residual_surface(sam: Result, fem: Result, hertz: CircularContact, reach: fl
     for result in (sam, fem):
         x, u = rows_of(result.tables["line"], "unloaded", "x_m", "uz_m")
         found.append((x[x >= 0.0] / a, 1e3 * MICRO * u[x >= 0.0]))
-    panel = _against_fem(("Residual surface", "$x/a$", "$u_z$, into the body [nm]"), *found, (0.0, reach))
+    panel = against_fem(("Residual surface", "$x/a$", "$u_z$, into the body [nm]"), *found, (0.0, reach))
     with style():
         figure = new_figure(8.4, 3.9)
         axes = figure.subplot_mosaic([["u", "f"], ["e", "f"]], height_ratios=(3, 1.3), width_ratios=(1, 1.15))

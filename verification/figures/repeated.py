@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Figures of repeated loading: strain of each period, loops of three points, map of classes in y = 0."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

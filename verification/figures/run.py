@@ -7,8 +7,6 @@ lie beside the origin through its largest value, see `verification.figures.place
 Lengths are in contact radii below a circular contact around the origin, else in µm.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path

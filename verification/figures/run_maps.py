@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Maps of one run: fields in a plane, pressure and friction over the contact, wear."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator

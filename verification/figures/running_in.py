@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The figure of a run that wears: six panels, as of Bosman & Schipper (2011), Figs. 13-17."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LightSource, ListedColormap

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One look for all figures, and how they are written."""
 
-from __future__ import annotations
-
 import gzip
 import io
 from collections.abc import Iterator, Mapping, Sequence
@@ -112,16 +110,18 @@ def zero_line(axis: Axes) -> None:
 
 
 def log_ticks(axis: Axis) -> None:
-    """Numbers on a logarithmic axis: powers of ten, steps between them where there are few of those, and even
-    ones where its ends are less than a factor of two apart; all in one notation.
+    """Numbers on a logarithmic axis: powers of ten, steps between them where there are few of those, fewer of
+    multiples of powers, which are wide, and even ones where its ends are less than a factor of two apart; all
+    in one notation.
     """
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
-    between = (1.0, 2.0, 5.0) if decades > 0.7 else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    plain = PLAIN_NUMBERS[0] <= low and high <= PLAIN_NUMBERS[1]
+    between = ((1.0, 2.0, 5.0) if plain else (1.0, 3.0)) if decades > 0.7 else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
     steps = (1.0,) if decades > MANY_DECADES else between
     several = LogLocator(subs=steps, numticks=20 if decades < 8.0 else 7)
     axis.set_major_locator(several if high > 2.0 * low else MaxNLocator(4))
-    words = "{:g}".format if PLAIN_NUMBERS[0] <= low and high <= PLAIN_NUMBERS[1] else _scientific
+    words = "{:g}".format if plain else _scientific
     axis.set_major_formatter(lambda value, _: words(value))
     axis.set_minor_formatter(NullFormatter())
 

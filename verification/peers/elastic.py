@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Elastic Hertz and the rough patch: what is run, and the errors."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -48,6 +46,16 @@ ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, Any]]] = {
     ],
 }
 """Program -> settings, loose to tight: on each grid the first that reaches ROUGH_ERROR is compared."""
+MISSED = {
+    (CONTACT_MECHANICS, 1024): 2,
+    (TAMAAS, 512): 2,
+    (TAMAAS, 1024): 4,
+    (ASPHER, 512): 2,
+    (ASPHER, 1024): 2,
+}
+"""Program and grid -> how many of these are left out: they end above the error, by commit a82b4b2, with which
+Tamaas took 111 s on the finest grid, 34 times SAM's time.
+"""
 TIGHT: Mapping[str, Mapping[str, Any]] = {
     SAM: {"tolerance": 1e-11},
     TAMAAS: {"tolerance": 1e-9},
@@ -127,7 +135,8 @@ def rough(
     """
     tight = {n: solution(problems.ROUGH, n, pythons[SAM]) for n in ROUGH_SIZES}
     rows, kernel = [], []
-    open_ = {(program, n): 0 for program in pythons for n in ROUGH_SIZES}  # -> place in the ladder
+    places = {(program, n): MISSED.get((program, n), 0) for program in pythons for n in ROUGH_SIZES}
+    open_ = {each: place for each, place in places.items() if place < len(ROUGH_LADDERS[each[0]])}
 
     def error(each: Measurement) -> float:
         return distance(each.fields["pressure"], tight[each.job.cells])

@@ -6,8 +6,6 @@ Elastic: lengths in units of the sphere's radius or of the side of the patch, pr
 composite modulus E*. Elastic-plastic: the modulus E and the Hertz radius are the units.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

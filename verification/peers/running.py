@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The programs as child processes, in turn and for several rounds, with the calibration kernel in between."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

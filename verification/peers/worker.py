@@ -11,8 +11,6 @@ coefficients, so its first solve counts. Time is processor time of all threads; 
 heights are outside.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

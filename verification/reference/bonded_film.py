@@ -15,8 +15,6 @@ film's by the elastic body at the centre of a Hertz contact, the metal's by equi
 too.
 """
 
-from __future__ import annotations
-
 import math
 from enum import StrEnum
 

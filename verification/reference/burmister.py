@@ -6,8 +6,6 @@ Sources: Burmister, J. Appl. Phys. 16 (1945) 89; the tables of Fox, Proc. 2nd In
 quadrature.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import j1
 

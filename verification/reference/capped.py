@@ -9,8 +9,6 @@ Sahlin, Larsson & Glavatskih, Tribol. Int. 40 (2007) 574; of the search, project
 Barzilai & Borwein: Birgin, Martinez & Raydan, SIAM J. Optim. 10 (2000) 1196.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import fft
 from scipy.optimize import brentq

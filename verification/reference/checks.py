@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Validators, which return the cleaned value or raise a ValueError that names the argument."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@ radius of the contact without the film. A change is (coated - bare)/bare; the bo
 the bare one too.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cache

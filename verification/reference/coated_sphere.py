@@ -15,8 +15,6 @@ chi = sum c_n P_2n(t/a) turns cosines into spherical Bessel functions, integral_
 force asked for.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -17,8 +17,6 @@ and s_xy = s_yz = 0. Sources: Burmister, J. Appl. Phys. 16 (1945) 89; O'Sullivan
 235.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.special import j0, j1, jv, spherical_jn
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Observed orders of convergence and growth."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

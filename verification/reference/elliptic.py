@@ -7,8 +7,6 @@ the circle. With A = a^2 + w, B = b^2 + w: integral_l^inf dw/sqrt(A B w) = 2 R_F
 integral_l^inf dw/(A sqrt(A B w)) = (2/3) R_D(B_l, l, A_l).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -5,8 +5,6 @@ Sources: Boussinesq (1885); Sneddon, Proc. Camb. Phil. Soc. 42 (1946) 29; Johnso
 section 3.4(a).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ along -x take a negative friction coefficient. The pressure is that of frictionl
 bodies).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import minimize
 

@@ -12,8 +12,6 @@ First yield by a factor c of the yield stress Y: p0 = c Y, hence by Hertz (Johns
 w_c = (pi c Y/(2 E*))^2 R, A_c = pi R w_c, P_c = (4/3) E* sqrt(R) w_c^(3/2).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -15,8 +15,6 @@ exponentials are referenced to the interface, so that only decaying ones appear.
 of such harmonics.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

@@ -9,8 +9,6 @@ and y. Bhargava, Hahn & Rubin, J. Appl. Mech. 52 (1985) 75, whose finite element
 found five times the plastic shear.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .checks import positive

@@ -5,8 +5,6 @@ Source: Mindlin and Cheng, Thermoelastic stress in the semi-infinite solid, J. A
 Outside, the field is that of a centre of dilatation for any sphere that does not cut the surface.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

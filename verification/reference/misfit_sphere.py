@@ -19,8 +19,6 @@ body. So a free surface that the zone does not reach changes nothing in the plas
 Lame's problem of a sphere: Timoshenko & Goodier 1970, Art. 152; Hill 1950, Ch. 5 for its plastic shell.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -14,8 +14,6 @@ displacement per force. Stresses are in the order 11, 22, 33, 23, 13, 12; eigens
 tensor components e_ab = e_ba = 1.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .quadrature import gauss, over_rectangle

@@ -6,8 +6,6 @@ rearranged in R + z so that the axis is regular. The force acts at the origin, R
 in m, broadcast. ValueError for a point at the origin itself, where the field is singular.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Integrals of point-load solutions over a rectangle: an independent answer for influence coefficients."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -8,8 +8,6 @@ stress follow from those of `flat_punch`. The shape: Ciavarella, Hills & Monno, 
 (1998) 319.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -7,8 +7,6 @@ yield stress, about any centre (E. Melan, Ing.-Arch. 9 (1938) 116-126; the back-
 p0/k = sqrt(2)/R, R the radius of the smallest ball about the deviators for p0 = 1, at the worst depth.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import minimize
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The stress record: six components along the last axis, order xx, yy, zz, yz, xz, xy."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

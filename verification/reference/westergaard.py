@@ -7,8 +7,6 @@ dimensions Johnson, Greenwood & Higginson, Int. J. Mech. Sci. 27 (1985) 383. psi
 at x = 0, pressures are per unit area of the plane, lengths in m, pressures in Pa.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ An input is a small folder: `bad_input(seed, number)` is the same on every machi
 disk. Most inputs are wrong, some are odd but good; what a reader makes of them is the business of who calls.
 """
 
-from __future__ import annotations
-
 import io
 import json
 import os
@@ -167,13 +165,6 @@ def npy(array: np.ndarray, *, objects: bool = False) -> bytes:
     return member.getvalue()
 
 
-def npy_header(kind: str, shape: tuple[int, ...]) -> bytes:
-    """How a member begins that says to hold values of that kind."""
-    member = io.BytesIO()
-    np.lib.format.write_array_header_1_0(member, {"descr": kind, "fortran_order": False, "shape": shape})
-    return member.getvalue()
-
-
 def lying_header(rng: random.Random) -> bytes:
     """An npy member whose header lies."""
     kind = rng.choice(("<f8", "|O", "<U999999999", "x", "<f8, <f8", "|V0", ">c16"))
@@ -200,7 +191,9 @@ def with_pickle() -> bytes:
 def bomb(shape: tuple[int, ...]) -> bytes:
     """An npz file of a few kB whose heights, said to have that shape, unpack to BOMB_BYTES."""
     stream, members = io.BytesIO(), {name: npy(array) for name, array in _arrays().items()}
-    members["height_m"] = npy_header("<f8", shape) + bytes(BOMB_BYTES)
+    member = io.BytesIO()
+    np.lib.format.write_array_header_1_0(member, {"descr": "<f8", "fortran_order": False, "shape": shape})
+    members["height_m"] = member.getvalue() + bytes(BOMB_BYTES)
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as target:
         for name, content in members.items():
             target.writestr(zipfile.ZipInfo(f"{name}.npy"), content, zipfile.ZIP_DEFLATED)

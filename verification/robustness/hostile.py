@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What the fuzzed inputs are made of: good scenes and tables, and what is hostile."""
 
-from __future__ import annotations
-
 from sam.scene import LAWS, SHAPES as COUNTER_BODIES
 
 EVERY_KEY = """title = "All keys"

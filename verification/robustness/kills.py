@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Commands in processes of their own, killed on purpose or not, and what they leave."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io
@@ -13,8 +11,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 from verification.runs.archive import ArchiveError, read_archive
@@ -29,6 +29,15 @@ Ended = tuple[int | None, str]
 """Exit code (negative: by a signal, None: stopped after its limit) and what a command printed."""
 Findings = list[tuple[str, str]]
 """(gate, what was wrong)."""
+SAID = 20
+"""Findings that a page shows."""
+
+
+def rows_of(findings: Findings, gates: Sequence[str]) -> Iterator[dict[str, Any]]:
+    """A row with the number of findings of each gate, and a row for each of the first of them."""
+    counts = Counter(gate for gate, _ in findings)
+    yield {"sweep": "What was wrong"} | {gate: counts[gate] for gate in gates}
+    yield from ({"sweep": "Findings", "gate": gate, "finding": text} for gate, text in findings[:SAID])
 
 
 def start(

@@ -6,8 +6,6 @@ stored as they are. A file that is damaged in any way is an ArchiveError: a dige
 and content of all members.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

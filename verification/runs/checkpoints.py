@@ -6,8 +6,6 @@ of the time. It can be continued only by the model, scene, code, packages and ma
 only they give the same bytes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

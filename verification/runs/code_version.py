@@ -6,8 +6,6 @@ A commit would not do: it changes with every word of documentation, and not with
 yet.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
@@ -17,7 +15,7 @@ from verification.runs.models import FEM, FEM_3D, FEM_LINE, SAM
 from verification.runs.provenance import installed
 
 ROOT = Path(__file__).resolve().parents[2]
-SUFFIXES = (".py", ".json", ".toml", ".csv")
+SUFFIXES = (".py", ".json", ".toml", ".csv", ".gz")
 CACHE = "__pycache__"
 _OF_RESULTS = (
     "verification/runs/models.py",

@@ -5,8 +5,6 @@ The lock is on the folder itself, so it leaves no file, and the kernel releases 
 Where the system or the file system has no such locks there is none.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import platform

@@ -4,8 +4,6 @@
 The files of a run need a part of VTK that loads in a third of the time of pyvista.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ Nothing else turns the axes or the order of components of the records into those
 VTK itself, which takes a quarter of the time to load that pyvista takes, and loaded only here.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from importlib.util import find_spec

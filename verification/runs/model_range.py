@@ -12,8 +12,6 @@ Before a solve a/R is the larger of Hertz and a fully plastic contact, F = H pi 
 stress at the strain 0.2 a/R (Tabor 1951; Johnson, Contact Mechanics (1985), section 6.3).
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -118,7 +116,13 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     """
     values = {} if result is None else result.last_fitting or result.quantities
     if _shape(scene) == "cylinder" and scene.patch_surface is None:
-        return _of_line(scene, values.get("contact_half_width_m"))
+        force, other = scene.loading.force, scene.counterbody
+        # the half-width of Hertz: Johnson (1985), Eq. 4.43
+        a = values.get("contact_half_width_m") or sqrt(
+            4.0 * force * other.radius / (pi * contact_modulus(scene) * other.length)
+        )
+        nothing = {"law": "", "poisson": [], "measured_to": 0.0, "quantities": {}, "outside": False}
+        return {"a_over_R": a / other.radius, "like": CYLINDER, **nothing}
     likes = list(_likes(scene, result, values))
     if not likes:
         return None
@@ -141,16 +145,6 @@ def model_range(scene: Scene, result: Result | None = None) -> dict[str, Any] | 
     }
     lost = None if result is None else _lost_height(scene, result)
     return out if lost is None else {**out, "lost_height": lost}
-
-
-def _of_line(scene: Scene, half_width: float | None) -> dict[str, Any]:
-    """What is known of a cylinder, whose half-width in m by Hertz is (4 F R/(pi E* length))^(1/2) (Johnson
-    4.43): a/R alone.
-    """
-    force, other = scene.loading.force, scene.counterbody
-    a = half_width or sqrt(4.0 * force * other.radius / (pi * contact_modulus(scene) * other.length))
-    nothing = {"law": "", "poisson": [], "measured_to": 0.0, "quantities": {}, "outside": False}
-    return {"a_over_R": a / other.radius, "like": CYLINDER, **nothing}
 
 
 def off_in_words(found: Mapping[str, Any]) -> str:

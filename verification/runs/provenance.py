@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Where a result comes from: versions, commit, machine, threads, time and the hashes of its inputs."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

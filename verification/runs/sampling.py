@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The fields of a result or of a run read back, as arrays on one grid. Lengths in m, stresses in Pa."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -8,8 +8,6 @@ another's is damaged: both are computed again, and said. A store that cannot be 
 stderr, never a result.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

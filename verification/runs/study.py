@@ -7,8 +7,6 @@ scene may hold, a study may vary. The values of one key are a list, or numbers b
 arithmetic, so that they are the same on every machine.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

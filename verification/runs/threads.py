@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The number of threads with which processes compute, set before they load numpy: standard library only."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -7,8 +7,6 @@ turned in the plane, so that nothing is symmetric. Their spectrum is below 1 % o
 2.5 um, ten of the file's cells.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from sam.scene import FrictionMap, HeightMap

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What changed in the gates between two reports, and whether each gate of the older one still stands."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Mapping

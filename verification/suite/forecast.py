@@ -5,8 +5,6 @@
 machine without a store, and the megabytes that it left in the report and in the store; empty: not measured.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import time

@@ -6,8 +6,6 @@ results.json says of each case by which code it was made (`code`, a digest of th
 and of which scenes (`inputs`, their SHA-256). Documentation and what only words a page do not count.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

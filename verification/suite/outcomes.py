@@ -6,8 +6,6 @@ it drew is written again byte for byte. Only a case that came to its end is kept
 by content, everything else by the version of the code that it depends on.
 """
 
-from __future__ import annotations
-
 import gzip
 from dataclasses import dataclass, replace
 from importlib import resources

@@ -7,8 +7,6 @@ between the two marks, in a file that has them, is written anew: the gates that 
 running-in.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Verdicts as data for machines: results.json, gates.csv, junit.xml, and the plain table on the terminal."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence

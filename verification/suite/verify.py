@@ -8,8 +8,6 @@ pages of the cases that ended and "complete": false in results.json; it takes th
 when it is whole.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import sys

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What a person sees while a command runs and after it: progress on stderr, tables on stdout."""
 
-from __future__ import annotations
-
 import codecs
 import difflib
 import sys

@@ -3,8 +3,6 @@
 um.
 """
 
-from __future__ import annotations
-
 import math
 
 PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T", 15: "P", 18: "E"}

@@ -8,8 +8,6 @@ through the cells, it scatters from 0 to above 4. For the same reason three valu
 the edge of a contact leaves on given cells is known, and no uncertainty is less (`of_edge`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import log
 

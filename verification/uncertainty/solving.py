@@ -3,8 +3,6 @@
 has none, the coarser companions of a scene, and what the results of all say together.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

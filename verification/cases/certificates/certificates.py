@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Every condition of a returned solution, by `verification.checks`, of small scenes in groups."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

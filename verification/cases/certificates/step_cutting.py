@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Near-perfect and perfect plasticity far beyond yield, in few load steps, in both models."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any

@@ -3,8 +3,6 @@
 strains are counted from the start of that cycle, heights from the worn surface.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from types import SimpleNamespace

@@ -5,8 +5,6 @@ calculation (Table 1, Fig. 3), whose pressure passes the yield stress of the fil
 times.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What a film changes under a sphere: a map, contact radii at which it matters, and thin films."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import product

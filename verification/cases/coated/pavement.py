@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The stress under a disc on a pavement of two layers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Speed, memory and counts of this code over those of the code that was published last, in turns."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -64,16 +62,17 @@ tolerance = 1e-3
 """For rough.toml, whose last table is [grid]."""
 PATH = {"path": '{ start = ["-3.9 um", "0 um"], end = ["3.9 um", "0 um"], step_per_radius = 4 }'}
 CYCLES = {"cycles": "2", "steps": "3", "unload_steps": "3"}
+ELEMENTS = {"steps": "5", "cells_per_radius": "16"}
 COARSE = {"steps": "1", "unload": "false", "cells_per_radius": "6"}
 RUNGS = (
     Rung("tiny elastic sphere", "hertz-sphere", {"cells": "[33, 33]"}),
     Rung("sphere sliding on a body that yields", "starts/sliding", {"steps": "2"}),
-    Rung("rough elastic, 512 × 512 cells", "starts/rough", {"cells": "[512, 512]"}),
-    Rung("sphere on Swift steel", "plastic-swift-rigid"),
+    Rung("rough elastic, 256 × 256 cells", "starts/rough", {"cells": "[256, 256]"}),
+    Rung("sphere on Swift steel", "plastic-swift-rigid", {"steps": "5"}),
     Rung("moving sphere on Swift steel", "moving-sphere", PATH),
     Rung("rough plastic step, 128 × 128 × 13 cells", "starts/rough", PATCH, SWIFT),
     Rung("running-in, 64 × 64 cells, 2 cycles", "running-in-bulk", CYCLES),
-    Rung("sphere on Swift steel, FEM", "plastic-swift-rigid", {"cells_per_radius": "16"}, model=FEM),
+    Rung("sphere on Swift steel, FEM", "plastic-swift-rigid", ELEMENTS, model=FEM),
     Rung("elastic sphere, 3D FEM", "hertz-sphere", COARSE, model=FEM_3D),
 )
 

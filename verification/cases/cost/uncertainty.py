@@ -4,8 +4,6 @@ drawn from a seed; as dimensionless numbers make a problem, an elastic sphere is
 shape, film, law, friction and load over yield stress differ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -13,14 +11,12 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import FEM, SAM, Context, DataFrame, Plot, with_grid, with_keys, with_loading
+from verification.cases.case import FEM, SAM, Context, DataFrame, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
-from verification.figures import lines
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
 from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
-from verification.rows import CaseFile
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty.rule import bound, order_seen
 from verification.uncertainty.solving import asked_of, solve
@@ -79,6 +75,9 @@ def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str,
     if doubt > max(own, error) / KNOWN:
         return row
     row |= {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
+    # as they are drawn, on logarithmic axes
+    drawn = {f"by-{name}": max(row[name], 1e-9) for name in rules} | {"of-error": max(row["error"], 1e-9)}
+    row |= drawn | {f"by-{name} expected": drawn["of-error"] for name in rules}
     return row | {"over-error": own / max(error, 1e-12 * abs(truth))}
 
 
@@ -301,23 +300,3 @@ def largest_median(rows: DataFrame, column: str) -> float:
 def problems(rows: DataFrame, column: str) -> float:
     """Those that have a value that counts."""
     return float(rows[rows[column].notna()]["problem"].nunique())
-
-
-def coverage(file: CaseFile, frame: DataFrame) -> Plot:
-    """Uncertainty over error by both rules."""
-    rules = {"formal order, 3 times the larger change": "uncertainty"}
-    rules |= {"observed order, factor 1.25": "textbook"}
-    known = frame[frame["over-error"].notna()]
-    shown = {"problem": known["problem"], "quantity": known["quantity"]}
-    logarithmic = {name: np.maximum(known[name], 1e-9) for name in ("error", *rules.values())}
-    panels = {
-        words: list(zip(*shown.values(), logarithmic["error"], logarithmic[name], strict=True))
-        for words, name in rules.items()
-    }
-    return Plot(
-        lines.coverage(panels),
-        "coverage",
-        "Uncertainty over error",
-        "The figure compares the stated uncertainty of each quantity with its true error, for two rules; "
-        "below the line the uncertainty is too small.",
-    )

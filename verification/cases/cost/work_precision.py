@@ -4,8 +4,6 @@ solve is made in a process of its own, the methods of a problem in turn, with th
 beside them; errors are against references that know their own uncertainty.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,6 +32,8 @@ from verification.figures.style import Drawing
 from verification.figures.work_precision import curves, overview
 from verification.rows import CaseFile
 
+__all__ = ["beside_elements", "to_one_percent"]  # named by the file of the case
+
 STUDIED = {problem.name: problem for problem in (*PROBLEMS, ELLIPSOID)}
 ADVISED = {COUPLED: SAM, TWICE: ON_TWO_GRIDS, AXISYMMETRIC: FEM, SPATIAL: FEM_3D}
 """Methods that a user is advised to take, and the names of their models."""
@@ -59,7 +59,7 @@ def frame(context: Context, names: Sequence[str] = tuple(STUDIED), solve: Solve 
         problem = STUDIED[name]
         scene = problem.scene(context.scene(problem.file))
         context.progress(f"{context.case}, {name}", 0, 1)
-        yield from with_errors(problem, scene, solved(problem, scene, solve or measured.solve_alone))
+        yield from with_errors(problem, scene, solved(problem, scene, solve or measured.solve_forked))
 
 
 def solved(problem: Problem, scene: Scene, solve: Solve) -> list[dict[str, Any]]:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The problems of case work-precision: scenes, methods with their ladders of resolutions, measures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

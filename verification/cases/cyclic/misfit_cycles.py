@@ -4,8 +4,6 @@ settles: both models against the exact solution, which alternates. With Armstron
 strain of a period falls to nothing, by a few per cent a period or less: nothing ratchets.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What is looked at where a Hertz pressure comes and goes in place on a body with back-stresses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -3,8 +3,6 @@
 loading; the shares of kinematic hardening are assumed, no cyclic curve of the steel is known.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -4,8 +4,6 @@ travelling. Cells see means of the stress: a grid has a limit of its own above t
 theorem the smallest ball about the means over each cell.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

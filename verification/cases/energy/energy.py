@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The work of the surface tractions is what is stored and dissipated, in both models."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The law of the chemical film along a path against its rate equations, where it fails, and its growth."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import pairwise

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Contacts in other units, of similar bodies and in other load steps: each pair solved, and compared."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from sam.scene import Friction, Scene

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A rigid cylinder that rolls over a body again and again, on either side of its shakedown limit."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from sam.scene import Plasticity, Result, Scene

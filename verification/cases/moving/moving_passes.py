@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Passes of a rigid sphere over a track, with and without friction, on steel and on perfect plasticity."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any

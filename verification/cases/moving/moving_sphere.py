@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A rigid sphere that moves over a body: Hertz at every place; the groove, its symmetry and energy."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

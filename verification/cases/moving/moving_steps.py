@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """How the groove of a rigid sphere depends on the step along the path, and on the cells."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

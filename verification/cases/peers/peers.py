@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 __all__ = ["missing"]  # named by the file of the case
-ROUNDS = {"quick": 1, "full": 5}
+ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
 # on one grid, settings are compared whose error is at most this many times the smallest one there
 AS_GOOD = 1.5

@@ -30,7 +30,7 @@ SIDE = 80e-6  # of the patch in m
 WAVES, CELLS = (4, 64), (512, 1024)  # of the elastic patch: longest and shortest wave in its side; cells
 ELASTIC: Mapping[str, tuple[int, tuple[float, ...], tuple[int, ...]]] = {
     "quick": (2, (0.01, 0.05), ()),
-    "full": (10, (0.01, 0.02, 0.03, 0.04, 0.05), (2048,)),
+    "full": (10, (0.01, 0.02, 0.05), (2048,)),
 }
 """Seeds; shares asked to be in contact; cells of one surface on which the extrapolation is checked."""
 YIELDING: Mapping[str, Mapping[str, Any]] = {

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Columns of a patch that yields, held or free along its sides: the mean lateral stress over the depth."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The approach is given and the force is found, in both models."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Images of plastic strain at a free surface: those of a spherical plastic zone cancel."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A sphere that grows inside a yielding body: plastic strain of both models in closed form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The stress of plastic strain by matrices between all layers and by sweeps; a large patch."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

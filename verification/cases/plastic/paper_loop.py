@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The plastic loop of Bosman & Schipper (2011), Fig. 7, with either stop, against backward Euler."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

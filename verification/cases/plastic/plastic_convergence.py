@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What the refinement of both models beyond yield takes of its points."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from verification.cases.case import DataFrame

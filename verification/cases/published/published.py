@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What others fitted to their finite elements, for the contacts of published.toml."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import sqrt
 

@@ -3,8 +3,6 @@
 wrong on purpose.
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import os
@@ -26,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from sam.scene import Scene, SceneError, parse_scene, read_scene, resolved
-from verification.cases.case import FEM, SAM, Case, Context, Measured, SmallTable
+from verification.cases.case import FEM, SAM, Context
 from verification.compare.own_data import read_data
 from verification.cost.plan import plan
 from verification.robustness.fuzz import (
@@ -42,7 +40,7 @@ from verification.robustness.fuzz import (
     good_scenes,
     lay,
 )
-from verification.robustness.kills import SAMFEM, Findings, finish, start
+from verification.robustness.kills import SAMFEM, Findings, finish, rows_of, start
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
 from verification.runs.study import read_study
@@ -50,8 +48,6 @@ from verification.runs.study import read_study
 SEED = 20260
 READ = {"quick": 150, "full": 500}
 RUNS = {"quick": 10, "full": 40}
-CAMPAIGN = "once, by commit 0f8782d and with its inputs: 20000 read, 300 through the command"
-"""How often and by what `main` was run for verification/data/bad-input.csv."""
 LIMIT_S = 2.0  # of processor time for a reader; the usual input takes milliseconds
 MEMORY = 1 << 30  # bytes that a reader may take beyond what the process has
 ADDRESSES = (1 << 30, 2 << 30, 4 << 30, None)  # bytes that a command may take
@@ -278,58 +274,35 @@ def judge_commands(
     return tally
 
 
-def counts_table(caption: str, counts: Counter) -> SmallTable:
-    """How the inputs of each kind ended."""
-    ends = sorted({end for _, end in counts})
-    rows = [(kind, *(str(counts[kind, end]) for end in ends)) for kind in KINDS]
-    total = ("all", *(str(sum(counts[kind, end] for kind in KINDS)) for end in ends))
-    return SmallTable(caption, ("kind of input", *ends), [*rows, total])
+def frame(context: Context) -> Iterator[dict[str, Any]]:
+    """How inputs ended that were read in this process, and others through the command."""
+    reads, runs = READ[context.level], RUNS[context.level]
+    with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
+        read = judge_readers(range(reads), Path(base))
+        stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
+        progress = partial(context.progress, f"{context.case}: commands")
+        yield from judged(read, judge_commands(stride, Path(base), progress=progress))
 
 
-class BadInputs(Case):
-    """Inputs read in this process, and the command run on others: tally of the readers, of the command."""
-
-    def solve(self, context: Context) -> tuple[Tally, Tally]:
-        reads, runs = READ[context.level], RUNS[context.level]
-        with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
-            read = judge_readers(range(reads), Path(base))
-            stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
-            progress = partial(context.progress, f"{self.name}: commands")
-            return read, judge_commands(stride, Path(base), progress=progress)
-
-    def measure(self, found: tuple[Tally, Tally]) -> dict[str, Measured]:
-        """How many inputs ended wrongly, in each way; and of how many kinds none was read."""
-        wrong = Counter(gate for tally in found for gate, _ in tally.findings)
-        values = {name: wrong[name] for name in GATES}
-        values["kinds-left-out"] = len(set(KINDS) - {kind for kind, _ in found[0].counts})
-        return {name: Measured(count, 0) for name, count in values.items()}
-
-    def setup(self, found: tuple[Tally, Tally]) -> Iterator[tuple[str, str]]:
-        read, ran = found
-        commands = f"{ran.counts.total()} through the command; seed {SEED}"
-        yield "Inputs", f"{read.counts.total()} read in one process, {commands}"
-        spaces = "an address space of 1, 2, 4 GiB or any for a command, half of them with closed streams"
-        readers = f"{LIMIT_S:g} s and {MEMORY / 2**30:g} GiB for a reader"
-        yield "Limits", f"{readers}; {COMMAND_LIMIT_S:g} s and {spaces}"
-        yield "Campaign", CAMPAIGN
-        slowest = f"{read.slowest[0]:.2f} s ({read.slowest[1]})"
-        yield "Slowest", f"{slowest}; command {ran.slowest[0]:.1f} s"
-
-    def tables(self, found: tuple[Tally, Tally]) -> Iterator[SmallTable]:
-        read, ran = (tally.counts for tally in found)
-        yield counts_table("Read: valid or refused, with every reason", read)
-        yield counts_table("Through the command, by exit code", ran)
-        kept = resources.files("verification").joinpath("data", "bad-input.csv").read_text(encoding="utf-8")
-        lines = list(csv.reader(kept.splitlines()))[1:]
-        for which in ("read", "run"):
-            counts = Counter({(kind, end): int(count) for how, kind, end, count in lines if how == which})
-            yield counts_table(f"Campaign: {which}", counts)
-
-    def notes(self, found: tuple[Tally, Tally]) -> list[str]:
-        return [f"{gate}: {text}" for tally in found for gate, text in tally.findings][:20]
-
-
-CASES = (BadInputs("bad-input"),)
+def judged(read: Tally, ran: Tally) -> Iterator[dict[str, Any]]:
+    """How the inputs of each kind ended, here and in the campaign; how many wrongly, in each way, of how many
+    kinds none was read, and the slowest.
+    """
+    yield from rows_of(read.findings + ran.findings, GATES)
+    yield {"sweep": "left out", "kinds-left-out": len(set(KINDS) - {kind for kind, _ in read.counts})}
+    kept = resources.files("verification").joinpath("data", "bad-input.csv").read_text(encoding="utf-8")
+    counted = {"Read: valid or refused, with every reason": read.counts}
+    counted |= {"Through the command, by exit code": ran.counts}
+    for how, kind, end, count in list(csv.reader(kept.splitlines()))[1:]:
+        counted.setdefault(f"Campaign: {how}", Counter())[kind, end] = int(count)
+    for words, counts in counted.items():
+        for (_, end), count in list(counts.items()):
+            counts["all", end] += count
+        ends = sorted({end for _, end in counts})
+        for kind in (*KINDS, "all"):
+            yield {"sweep": words, "kind of input": kind} | {end: counts[kind, end] for end in ends}
+    for tally in (read, ran):
+        yield {"sweep": "Slowest", "time [s]": tally.slowest[0], "input": tally.slowest[1].partition(":")[0]}
 
 
 def main(what: str, first: str, last: str) -> None:

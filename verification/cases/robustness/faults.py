@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Solves and sweeps that are killed at random moments, and what else can go wrong in a run's folder."""
 
-from __future__ import annotations
-
 import os
 import random
 import shutil
@@ -11,26 +9,29 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from subprocess import Popen
+from typing import Any
 
-from verification.cases.case import Case, Context, Measured, SmallTable
+from verification.cases.case import Context
 from verification.robustness.kills import (
     Ended,
+    Findings,
     Trial,
     finish,
     inspect,
     killed_solve,
     killed_sweep,
+    rows_of,
     start,
     tables,
 )
 from verification.runs.files import SUMMARY
 
 SEED = 417
-KILLS = {"quick": (6, 4), "full": (100, 50)}  # of a solve, of a sweep, which takes three times as long
+KILLS = {"quick": (6, 4), "full": (10, 6)}  # of a solve, of a sweep, which takes three times as long
 AT_ONCE = 2
 KINDS = ("after a checkpoint", "a worker", "with points finished")
 """Kills that must have occurred, or the others prove little."""
@@ -141,8 +142,8 @@ FAULTS: dict[str, Fault] = {
 }
 
 
-def judge_fault(name: str, base: Path) -> tuple[tuple[str, str, str], Trial]:
-    """The row of a fault for the reader, and what was wrong with its end."""
+def judge_fault(name: str, base: Path) -> tuple[dict[str, str], Findings]:
+    """The row of a fault, and what was wrong with its end."""
     base.mkdir()
     (base / "scene.toml").write_text(SCENE)
     make, codes, says = FAULTS[name]
@@ -155,7 +156,8 @@ def judge_fault(name: str, base: Path) -> tuple[tuple[str, str, str], Trial]:
         found.append(("wrong-endings", f"{name}: the message does not say {says}: {message}"))
     if (base / "run" / SUMMARY).exists():
         found.append(("early-summaries", f"{name}: there is a {SUMMARY}"))
-    return (name, str(code), message.replace(str(base), "…")), (name, found)
+    row = {"sweep": "Other faults", "fault": name, "exit code": str(code)}
+    return row | {"message": message.replace(str(base), "…")}, found
 
 
 def undisturbed(words: Sequence[str], out: Path, store: Path) -> float:
@@ -207,62 +209,36 @@ def delays(count: int, seconds: float, rng: random.Random) -> list[float]:
     return [seconds * (k + rng.random()) / count for k in range(count)]
 
 
-def values_of(trials: Sequence[Trial]) -> dict[str, Measured]:
-    """The gates: what was found wrong, and kinds of kills that did not occur."""
-    counts = Counter(gate for _, findings in trials for gate, _ in findings)
-    missing = sum(not any(kind in how for how, _ in trials) for kind in KINDS)
-    return {gate: Measured(counts[gate], 0) for gate in GATES} | {"missing-kinds": Measured(missing, 0)}
+def frame(context: Context) -> Iterator[dict[str, Any]]:
+    """How solves and sweeps ended that were killed, and the other faults."""
+    solves, sweeps = KILLS[context.level]
+
+    def progress(stage: str, done: int, total: int) -> None:
+        context.progress(f"{context.case}: {stage}", done, total)
+
+    with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
+        base = Path(name)
+        for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
+            (base / file).write_text(text)
+        solved, seconds = kill_solves(solves, base, progress)
+        trials = {f"Kills of a solve of {seconds:.1f} s": solved}
+        trials["Kills of a sweep of 24 scenes"] = kill_sweeps(sweeps, base, progress)
+        others = [judge_fault(name, base / f"fault-{k}") for k, name in enumerate(FAULTS)]
+    yield from (row for row, _ in others)
+    yield from judged(trials, [each for _, found in others for each in found])
 
 
-def counts_table(caption: str, trials: Sequence[Trial]) -> SmallTable:
-    """How often what was killed, and how often nothing was wrong afterwards."""
-    hows = Counter(how for how, _ in trials)
-    good = Counter(how for how, findings in trials if not findings)
-    columns = ("killed", "times", "ended with equal tables, nothing lost")
-    return SmallTable(caption, columns, [(how, str(hows[how]), str(good[how])) for how in sorted(hows)])
-
-
-def every(found: tuple) -> list[Trial]:
-    """All trials of what `Faults` solves."""
-    solved, swept, judged, _ = found
-    return [*solved, *swept, *(trial for _, trial in judged)]
-
-
-class Faults(Case):
-    """Solves and sweeps killed, the other faults with their rows, and the seconds of an undisturbed solve."""
-
-    def solve(self, context: Context) -> tuple[list[Trial], list[Trial], list, float]:
-        solves, sweeps = KILLS[context.level]
-
-        def progress(stage: str, done: int, total: int) -> None:
-            context.progress(f"{self.name}: {stage}", done, total)
-
-        with tempfile.TemporaryDirectory(prefix="samfem-faults-") as name:
-            base = Path(name)
-            for file, text in (("scene.toml", SCENE), ("sphere.toml", SWEPT), ("study.toml", STUDY)):
-                (base / file).write_text(text)
-            solved, seconds = kill_solves(solves, base, progress)
-            swept = kill_sweeps(sweeps, base, progress)
-            judged = [judge_fault(name, base / f"fault-{k}") for k, name in enumerate(FAULTS)]
-        return solved, swept, judged, seconds
-
-    def measure(self, found: tuple) -> dict[str, Measured]:
-        return values_of(every(found))
-
-    def setup(self, found: tuple) -> Iterator[tuple[str, str]]:
-        solved, swept, _, seconds = found
-        sweeps = f"{len(swept)} of a sweep of 24 scenes; kill -9, seed {SEED}"
-        yield "Kills", f"{len(solved)} of a solve of {seconds:.1f} s, {sweeps}"
-        yield "Checkpoints", "after each load step"
-
-    def tables(self, found: tuple) -> Iterator[SmallTable]:
-        solved, swept, judged, _ = found
-        yield counts_table("Solves", solved)
-        yield counts_table("Sweeps", swept)
-        yield SmallTable("Other faults", ("fault", "exit code", "message"), [row for row, _ in judged])
-
-    def notes(self, found: tuple) -> list[str]:
-        return [f"{gate}: {text}" for _, findings in every(found) for gate, text in findings][:20]
-
-
-CASES = (Faults("faults"),)
+def judged(trials: Mapping[str, Sequence[Trial]], others: Findings) -> Iterator[dict[str, Any]]:
+    """How often what was killed, and how often nothing was wrong afterwards; what was found wrong, and kinds
+    of kills that did not occur. others: findings of other faults.
+    """
+    for words, each in trials.items():
+        hows = Counter(how for how, _ in each)
+        good = Counter(how for how, findings in each if not findings)
+        for how in sorted(hows):
+            row = {"sweep": words, "killed": how, "times": hows[how]}
+            yield row | {"ended with equal tables, nothing lost": good[how]}
+    every = [trial for each in trials.values() for trial in each]
+    yield from rows_of([each for _, findings in every for each in findings] + others, GATES)
+    missing = sum(not any(kind in how for how, _ in every) for kind in KINDS)
+    yield {"sweep": "missing", "missing-kinds": missing}

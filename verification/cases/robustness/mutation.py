@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Mutation check: numbers, comparisons and conditions changed one at a time, and what fast tests notice."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -12,13 +10,22 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from importlib import util
 from pathlib import Path
+from typing import Any
 
-from verification.cases.case import Case, Context, Measured, SmallTable
+from verification.cases.case import Context
 from verification.runs.threads import EVERY_LIBRARY
 
 ROOT = Path(__file__).resolve().parents[3]
-TOOL, FEW = "verification.robustness.mutants", "sam.tribofilm.law"
+TOOL = "verification.robustness.mutants"
 """The program that perturbs the numbers: of the source, and not imported here before it is needed."""
+MODULES = {
+    "quick": ("sam.tribofilm.law",),
+    "full": (
+        *("sam.kernels.primitives", "sam.plasticity.flow", "sam.tribofilm.law"),
+        *("fem_reference.common.back_stress", "fem_reference.common.elasticity"),
+    ),
+}
+"""Those that are asked about; frozen.csv has what was found of all, in 25 minutes of processor time."""
 
 
 def needs() -> str:
@@ -41,106 +48,71 @@ def checked(*options: str) -> dict:
         return json.loads(found.read_text(encoding="utf-8"))
 
 
-def mutants_of(found: Mapping) -> list[tuple]:
-    """(mutant, judgement, whether it is a changed number of the core, of which none is left out)."""
-    from verification.robustness.mutants import changes, scope  # noqa: PLC0415 - of the source only
-
-    pairs = [(changes.Mutant(**one["mutant"]), one) for one in found["judged"]]
-    return [(mutant, one, scope.whole(mutant)) for mutant, one in pairs]
+def frame(context: Context) -> Iterator[dict[str, Any]]:
+    """What `checked` finds of the modules of a level, at quick only where it is asked by name."""
+    return judged(checked(*(word for name in MODULES[context.level] for word in ("--module", name))))
 
 
-def values_of(found: Mapping) -> dict[str, Measured]:
-    """The gates, from the judgements as read back."""
-    outcomes = Counter(one["outcome"] for _, one, whole in mutants_of(found) if whole)
-    killed = [one["seconds"] for one in found["judged"] if one["outcome"] == "killed"]
-    moving = [one for one in found["shown"] if not one["equivalent"]]
-    return {
-        "killed": Measured(outcomes["killed"] / max(outcomes["killed"] + outcomes["survived"], 1)),
-        "unexplained": Measured(len(found["lost"]), 0),
-        "not-inert": Measured(len(moving)),
-        "rewriting": Measured(len(found["control"])),
-        "slowest-kill": Measured(max(killed, default=float("nan")), unit="s"),
+def judged(found: Mapping) -> Iterator[dict[str, Any]]:
+    """What the gates ask, of the judgements as read back; by module how many mutants were killed of those
+    that count; what no test noticed, and the constants that must not matter.
+    """
+    from verification.robustness.mutants import changes, frozen, scope  # noqa: PLC0415 - of the source only
+
+    counts, kinds = Counter(), {"number": "numbers", "row": "table rows"}
+    kinds |= {"comparison": "comparisons", "branch": "branches"}
+    modules: dict[str, set[str]] = {}
+    explained, lost, kept = scope.constants("explained"), found["lost"], frozen.read()
+    survivors = [{"where": name, "what": what} for name, what in lost.items()]
+    for one in found["judged"]:
+        mutant = changes.Mutant(**one["mutant"])
+        part = "numbers of the core" if (whole := scope.whole(mutant)) else "drawn around it"
+        counts[part, one["outcome"]] += 1
+        own = "the core" if mutant.module in scope.core() else "what is around it"
+        modules.setdefault(f"Mutants killed in the modules of {own}", set()).add(mutant.module)
+        counts[mutant.module, mutant.kind.replace("count", "number"), one["outcome"]] += 1
+        if whole and one["outcome"] == "survived" and mutant.name not in lost:
+            why = explained.get(mutant.key, "")
+            words = {"where": mutant.name, "what": f"{mutant.text} in {mutant.line}", "why": why}
+            survivors.append(words | {"tests asked": one["asked"]})
+    killed = [one for one in found["judged"] if one["outcome"] == "killed"]
+    asserted = sum(one["error"] in ("AssertionError", "Failed") for one in killed)
+    yield {
+        "sweep": "Mutation",
+        "killed": share(counts, "numbers of the core"),
+        "killed, drawn": share(counts, "drawn around it"),
+        "unexplained": len(lost),
+        "not-inert": sum(not one["equivalent"] for one in found["shown"]),
+        "rewriting": len(found["control"]),
+        "slowest-kill": max((one["seconds"] for one in killed), default=float("nan")),
+        "killed by an assertion": asserted,
+        "by an error or the time": len(killed) - asserted,
+        "tests": found["tests"],
+        "time [s]": found["seconds"],
+        "killed in the campaign": sum(int(row[kind]) for row in kept for kind in frozen.COLUMNS[2:5]),
+        "survived in it": sum(len(row["survivors"]) for row in kept),
     }
-
-
-def counts_table(found: Mapping) -> SmallTable:
-    """By module how many mutants were killed of those that count: numbers of the core, and the drawn."""
-    counts, kinds = Counter(), ("number", "row", "comparison", "branch")
-    for mutant, one, _ in mutants_of(found):
-        kind = mutant.kind.replace("count", "number")
-        for name in (mutant.module, "all"):
-            counts[name, one["outcome"]] += 1
-            counts[name, kind, one["outcome"]] += 1
-    names = [*sorted({name for name, *_ in counts} - {"all"}), "all"]
-
-    def killed_of(*key: str) -> str:
-        killed = counts[*key, "killed"]
-        return f"{killed} of {killed + counts[*key, 'survived']}"
-
-    rows = [
-        (name, *(killed_of(name, kind) for kind in kinds), str(counts[name, "structure"])) for name in names
-    ]
-    columns = ("module", "numbers", "table rows", "comparisons", "branches", "structure, left out")
-    return SmallTable("Mutants by module, killed", columns, rows)
-
-
-def survivors_table(found: Mapping) -> SmallTable:
-    """What no test noticed and should have, and every other changed number of the core, with the reason."""
-    from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-
-    explained, lost = scope.constants("explained"), found["lost"]
-    rows = [(name, *what.rsplit(": ", 1), "") for name, what in lost.items()]
-    rows += [
-        (mutant.name, f"{mutant.text} in {mutant.line}", explained.get(mutant.key, ""), str(one["asked"]))
-        for mutant, one, whole in mutants_of(found)
-        if whole and one["outcome"] == "survived" and mutant.name not in lost
-    ]
-    return SmallTable("Survivors", ("where", "what", "why", "tests asked"), rows)
-
-
-def equivalent_table(found: Mapping) -> SmallTable:
-    """The equivalent mutants: constants that must not matter, and how much they do."""
-    rows = []
+    for words, names in modules.items():
+        for name in sorted(names):
+            ends = {end: [counts[name, kind, end] for kind in kinds] for end in ("killed", "survived")}
+            said = {
+                each: f"{one} of {one + other}"
+                for each, one, other in zip(kinds.values(), *ends.values(), strict=True)
+            }
+            left = sum(counts[name, kind, "structure"] for kind in kinds)
+            yield {"sweep": words, "module": name} | said | {"structure, left out": left}
+    yield from ({"sweep": "Survivors"} | each for each in survivors)
     for one in found["shown"]:
         where = f"{one['mutant']['module']} {one['mutant']['function']}"
-        change, probes = f"{one['change']:.2g}", str(one["probes"])
-        rows.append((where, one["mutant"]["text"], one["reason"], change, probes))
-    columns = "where|constant|why it must not matter|largest change, in tolerances|solves that run the module"
-    return SmallTable("Constants that must not change the answer", columns.split("|"), rows)
+        row = {"sweep": "Constants that must not change the answer", "where": where}
+        row |= {"what": one["mutant"]["text"], "why": one["reason"]}
+        yield row | {
+            "largest change, in tolerances": one["change"],
+            "solves that run the module": one["probes"],
+        }
 
 
-class Mutation(Case):
-    """What `checked` finds, at the level quick, where it is asked by name, of one module."""
-
-    def solve(self, context: Context) -> dict:
-        quick = context.level == "quick"
-        return checked(*("--module", FEW) * quick) | {"quick": quick}
-
-    def measure(self, found: Mapping) -> dict[str, Measured]:
-        return values_of(found)
-
-    def setup(self, found: Mapping) -> Iterator[tuple[str, str]]:
-        from verification.robustness.mutants import scope  # noqa: PLC0415 - of the source only
-        from verification.robustness.mutants.changes import FACTOR, MORE  # noqa: PLC0415 - of the source only
-
-        errors = Counter(one["error"] for one in found["judged"] if one["outcome"] == "killed")
-        failed = sum(count for error, count in errors.items() if error in ("AssertionError", "Failed"))
-        others = sum(errors.values()) - failed
-        fast = f"{found['tests']} that take less than a second each"
-        yield "Perturbed by", f"a factor {FACTOR}; named counts grow by {MORE}; one at a time"
-        drawn = f"{scope.PERCENT} % of the comparisons, conditions and numbers around the core"
-        yield "Drawn beside them", drawn
-        yield "Left out as structure", "0, indices, powers, keys, integers that never meet a float"
-        yield "Tests asked", f"{fast}; those that run the function, the fastest first"
-        yield "Killed by", f"{failed} by an assertion, {others} by an error or by the time that they take"
-        yield "Time", f"{found['seconds']:.0f} s"
-        if found["quick"]:
-            yield "Sample", f"{FEW}; all modules at level full"
-
-    def tables(self, found: Mapping) -> Iterator[SmallTable]:
-        for table in (counts_table, survivors_table, equivalent_table):
-            if (made := table(found)).rows:
-                yield made
-
-
-CASES = (Mutation("mutation", needs=needs, alone=True),)
+def share(counts: Counter, part: str) -> float:
+    """Of a part that tests kill, without what is structure."""
+    killed = counts[part, "killed"]
+    return killed / max(killed + counts[part, "survived"], 1)

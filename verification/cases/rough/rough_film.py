@@ -4,8 +4,6 @@ public, nor do they say against which body: a synthetic patch with its roughness
 and under a rigid plane, and as smooth and as rough as the film is thick.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import product

@@ -7,20 +7,19 @@ the paper says of its own surface is judged in a table.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from sam.scene import Scene
-from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, View, with_grid, with_keys
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, View
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
-    BULK,
     CUBIC,
     GIGA,
     LAST,
     NAMES,
+    NAN,
     A,
     B,
     Effort,
@@ -38,7 +37,7 @@ PRINTED, RENEWED = "printed inputs", "renewed"
 WORDS = {PRINTED: "with the printed inputs", RENEWED: "weakly hardening layer, renewed counter-surface"}
 """The readings on all surfaces: with its numbers, by our plastic loop, or see `renewed` -> for the reader."""
 SHOWN = 2  # the seed of the scenes
-FULL = Effort(LAST, steps=10, cells=64, seeds=tuple(range(1, 11)))
+FULL = Effort(LAST, steps=3, cells=64, seeds=tuple(range(1, 11)))
 EFFORTS = {
     "quick": {PRINTED: Effort(3, 3, 32, (B,)), RENEWED: Effort(3, 2, 32, (A,))},
     "full": {PRINTED: FULL, RENEWED: FULL},
@@ -55,27 +54,6 @@ def renewed(scene: Scene) -> Scene:
         study.with_counter(study.with_layer_alpha(scene, study.LAYER_ALPHA), study.ROUGHNESS["sq"])
     )
     return scene.model_copy(update={"title": f"{scene.title}, {WORDS[RENEWED]}"})
-
-
-def others(curve_c: Scene) -> dict[str, Reading]:
-    """What the paper leaves open, one at a time, on the surface of the scenes."""
-
-    def softer(scene: Scene) -> Scene:
-        return study.deeper(study.with_plasticity(scene, B=study.LITERATURE_B))
-
-    def reading(label: str, change: Callable[[Scene], Scene], *cases: str) -> Reading:
-        return Reading(f"{label}-", Effort(FULL.cycles, FULL.steps, FULL.cells, cases), change)
-
-    curve = partial(study.with_plasticity, profile=curve_c.body.plasticity.profile)
-    found = {"curve C": reading("curve-c", curve, B)}
-    for scale in (0.8, 1.25):
-        change = partial(study.with_deviation, scale=scale)
-        found[f"deviation × {scale:g}"] = reading(f"deviation-{scale:g}", change, B)
-    found[f"B = {study.LITERATURE_B / 1e6:g} MPa"] = reading("1280", softer, BULK, B)
-    for window in (0, 3, 7):  # cells; the scenes have 5
-        change = partial(with_keys, section="wear", smoothing_window=window)
-        found[f"window {window}"] = reading(f"window-{window}", change, BULK)
-    return found
 
 
 def alike(one: Run) -> bool:
@@ -128,21 +106,25 @@ COUNTS: Mapping[str, Callable[[Run], int]] = {
 
 
 class RunningIn(Readings):
-    """Every material on every surface in both readings, and what is varied; statements over the converged."""
+    """Every material on every surface in both readings; statements over the converged."""
 
     def readings(self, context: Context) -> dict[str, Reading]:
         efforts = EFFORTS[context.level]
-        both = {
+        return {
             PRINTED: Reading("", efforts[PRINTED]),
             RENEWED: Reading(f"{RENEWED}-", efforts[RENEWED], renewed),
         }
-        return both | (others(context.scene("running-in-curve-c")) if context.level == "full" else {})
+
+    def solved_again(self, reading: Any, material: str, surface: int) -> bool:
+        return surface == SHOWN
 
     def measure(self, found: DataFrame) -> dict[str, Measured]:
-        good = found[found["converged"]]["run"]
+        """Of runs that are solved, as a campaign has no surfaces and keeps six digits; all are counted."""
+        good = study.solved_of(found)
         values = {name: Measured(float(good.map(of).max(skipna=False))) for name, of in LARGEST.items()}
         values |= {name: Measured(sum(map(of, good)), 0) for name, of in COUNTS.items()}
-        return values | {"unconverged": Measured(len(found) - len(good), 0)}
+        values["unconverged"] = Measured(int((~found["converged"]).sum()), 0)
+        return values | {"campaign": super().measure(found)["campaign"]}
 
     def data(self, found: DataFrame) -> dict[str, Any]:
         return {"statements": readings_of(found), "second_reading": WORDS[RENEWED]}
@@ -153,12 +135,10 @@ class RunningIn(Readings):
         for reading, words in WORDS.items():
             groups = {NAMES[case]: runs for case, runs in runs_of(found, reading)}
             yield study.runs_table(words.capitalize(), groups)
-        varied = found[~found["reading"].isin(WORDS)].groupby(["material", "reading"], sort=False)["run"]
-        if groups := {f"{NAMES[case]}, {reading}": runs for (case, reading), runs in varied}:
-            yield study.runs_table("Other assumptions on the surface of the scenes", groups)
         yield regimes_table(found)
 
     def notes(self, found: DataFrame) -> Iterator[str]:
+        yield from self.told_of_campaign(found)
         yield "The paper's surface and curves of Fig. 9 are not public: a failed statement is a finding."
         every = [
             (f"{NAMES[case]}, surface {seed}, {reading}", one)
@@ -190,7 +170,7 @@ class RunningIn(Readings):
             "The figure compares the yield stress of the materials over depth. The shape of the profiles is "
             "from the paper's Fig. 9, which has no numbers; their size is assumed.",
         )
-        for reading, case, one in shown_of(good):
+        for reading, case, one in shown_of(found):
             yield Plot(
                 six_panels(one.scar, one.history, one.friction),
                 led(reading, case),
@@ -201,7 +181,7 @@ class RunningIn(Readings):
             )
 
     def views(self, found: DataFrame) -> Iterator[View]:
-        for reading, case, one in shown_of(found[found["converged"]]):
+        for reading, case, one in shown_of(found):
             yield View(
                 led(reading, f"{case}-seed-{one.scene.surface.seed}"),
                 "worn",
@@ -222,37 +202,28 @@ def runs_of(found: DataFrame, reading: str) -> Iterator[tuple[str, Any]]:
     yield from found[found["reading"] == reading].groupby("material", sort=False)["run"]
 
 
-def shown_of(good: DataFrame) -> Iterator[tuple[str, str, Run]]:
-    """Of each reading and material the run on the surface of the scenes, or else the first one."""
+def shown_of(found: DataFrame) -> Iterator[tuple[str, str, Run]]:
+    """Of each reading and material the run on the surface of the scenes, or else the first that is solved."""
+    good = found.loc[study.solved_of(found).index]
     for reading in WORDS:
         for case, runs in runs_of(good, reading):
             yield reading, case, min(runs, key=lambda one: one.scene.surface.seed != SHOWN)
 
 
-def regimes(found: DataFrame, reading: str) -> dict[str, dict[str, float]]:
-    """Material -> in Pa strength, pressures at which films fail and metal goes, median peak of cycle 1."""
-    values = {}
-    for case, runs in runs_of(found, reading):
-        own = Limits.of(runs.iloc[0].scene)
-        first = [one.history.p_max[0] for one in runs if one.result.converged]
-        values[NAMES[case]] = {
-            "strength": own.strength,
-            "removed_from": own.removal,
-            "film_fails_from": own.film,
-            "reached": float(np.median(first)) if first else float("nan"),
-        }
-    return values
-
-
 def regimes_table(found: DataFrame) -> SmallTable:
-    """The pressures at which films fail and metal is removed, against the largest there is."""
+    """The pressures at which films fail and metal is removed, against the largest there is: the median of the
+    runs in the first cycle.
+    """
     rows = []
     for reading in WORDS:
-        for name, own in regimes(found, reading).items():
-            numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in own.values())
-            ends = own["reached"], own["film_fails_from"], own["removed_from"]
-            so = "no run converged" if np.isnan(own["reached"]) else str(regime(*ends))
-            rows.append((reading, name, *numbers, so))
+        for case, runs in runs_of(found, reading):
+            own = Limits.of(runs.iloc[0].scene)
+            first = [one.history.p_max[0] for one in runs if one.result.converged]
+            reached = float(np.median(first)) if first else NAN
+            values = own.strength, own.removal, own.film, reached
+            numbers = ("–" if np.isnan(number) else f"{GIGA * number:.2f}" for number in values)
+            so = str(regime(reached, own.film, own.removal)) if first else "no run converged"
+            rows.append((reading, NAMES[case], *numbers, so))
     columns = (
         "reading|case|σ_y(limit) at the surface|removed from, μ high|film fails from|p_max, first cycle|so"
     )
@@ -282,48 +253,4 @@ def readings_plot(good: DataFrame) -> Plot:
     )
 
 
-SIZES = {"1 µm": (32, 5), "0.457 µm": (70, 11)}
-"""Cells along 32 um and in the window of smoothing, 5 um: 12 and 26 cells in the shortest wave of 12 um."""
-
-
-def meshed(scene: Scene, cells: int, window: int) -> Scene:
-    """The scene on so many cells a side, and with so many in the window of smoothing."""
-    return with_keys(with_grid(scene, cells=(cells, cells)), "wear", smoothing_window=window)
-
-
-class RunningInCells(Readings):
-    """All materials on a quarter of the printed area; both sizes of cells stand for readings."""
-
-    def readings(self, context: Context) -> dict[str, Reading]:
-        effort = Effort(LAST, steps=3, cells=32)
-        return {
-            size: Reading(f"cells-{cells}-", effort, partial(meshed, cells=cells, window=window))
-            for size, (cells, window) in SIZES.items()
-        }
-
-    def measure(self, found: DataFrame) -> dict[str, Measured]:
-        good = found[found["converged"]]["run"]
-        volume = Measured(float(good.map(LARGEST["volume"]).max(skipna=False)))
-        return {"missing": Measured(len(SIZES) * len(NAMES) - len(good), 0), "volume": volume}
-
-    def data(self, found: DataFrame) -> dict[str, Any]:
-        return {"statements": readings_of(found)}
-
-    def tables(self, found: DataFrame) -> Iterator[SmallTable]:
-        yield study.statements_table(readings_of(found))
-        groups = found.groupby(["material", "reading"], sort=False)["run"]
-        named = {f"{NAMES[case]}, {size}": runs for (case, size), runs in groups}
-        yield study.runs_table("Runs on both sizes of cells", named)
-
-    def notes(self, found: DataFrame) -> Iterator[str]:
-        changed = [
-            f"{one['statement']} ({one['by_median']}, then {other['by_median']})"
-            for one, other in zip(*readings_of(found).values(), strict=True)
-            if one["by_median"] != other["by_median"]
-        ]
-        count = f"{len(changed) or 'no'} verdict{'s change' if len(changed) > 1 else ' changes'}"
-        yield f"On finer cells {count}{': ' * bool(changed)}{'; '.join(changed)}."
-        yield "One surface of a quarter of the printed area was solved: this shows the effect of the cells."
-
-
-CASES = (RunningIn("running-in"), RunningInCells("running-in-cells"))
+CASES = (RunningIn("running-in"),)

@@ -21,9 +21,9 @@ from verification.compare.measures import Plane, depths_compared, patch_pressure
 from verification.judging import relative_l2
 from verification.runs.sampling import Tables
 
-CELLS = (32, 48, 64)
+CELLS = (32, 64)
 SQUARES = 16  # along a side; the rim of a scar bears on single cells, of any size
-CYCLES, STEPS = 3, 2
+CYCLES, STEPS = 2, 2
 LIMIT, THICK = 0.012, 4e-9  # of the plastic strain, down to this depth in m below the surface of each cycle
 LAW = Plasticity(
     law="linear",
@@ -55,9 +55,8 @@ def compared(context: Context) -> Iterator[dict[str, Any]]:
         states = (*(f"cycle-{cycle}" for cycle in range(1, CYCLES)), "unloaded")
         worn = np.array([surface(sam, state, "worn_m") for state in states])
         steps = np.diff(worn, axis=0, prepend=0.0 * worn[:1])
-        for mode in ("own", "given"):
-            context.progress(f"{context.case}, {cells} cells, FEM, {mode}", CELLS.index(cells), len(CELLS))
-            fem = worn_cycles(scene, list(steps) if mode == "given" else None)
+        context.progress(f"{context.case}, {cells} cells, FEM", CELLS.index(cells), len(CELLS))
+        for mode, fem in zip(("own", "given"), worn_cycles(scene, None, list(steps)), strict=True):
             first = alone.tables, fem[0].tables
             for cycle, own in ((1, alone), (CYCLES, sam)):
                 row = {"cells": cells, "mode": mode, "cycle": cycle}

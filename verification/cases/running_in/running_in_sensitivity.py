@@ -47,6 +47,7 @@ TABOR, STRAIN = (2.8, 3.0), 0.08  # hardness over yield stress at STRAIN: Tabor,
 STEEL = "6.8 to 8.2 GPa of AISI 52100 hardened through (60 to 65 HRC, 697 to 832 HV by ASTM E140)"
 DISCS = "5 to 60 nm of polished to ground discs"
 BEST = 3  # points that are shown
+AGAIN = 2  # points that are solved again beside a campaign: 10 of 320 runs
 MATERIALS = (BULK, A, B)
 
 
@@ -264,16 +265,16 @@ class RunningInSensitivity(Readings):
             for k, shares in enumerate(design(UNIFORM, len(INPUTS), points, SEED))
         }
 
+    def solved_again(self, reading: Any, material: str, surface: int) -> bool:
+        return reading < AGAIN
+
     def solve(self, context: Context) -> Studied:
         points, _ = EFFORTS[context.level]
         return Studied(super().solve(context), design(UNIFORM, len(INPUTS), points, SEED))
 
     def measure(self, found: Studied) -> dict[str, Measured]:
         every = len(found.shares) * len(found.effort.cases)
-        return {
-            "missing": Measured(every - len(found.frame), 0),
-            "lost": Measured(1.0 - float(found.frame["converged"].mean())),
-        }
+        return {"missing": Measured(every - len(found.frame), 0)} | super().measure(found.frame)
 
     def setup(self, found: Studied) -> Iterator[tuple[str, str]]:
         points, effort = len(found.shares), found.effort
@@ -290,8 +291,7 @@ class RunningInSensitivity(Readings):
         yield "Resolved", f"changes of {least:.0f} % and more between the halves of a range"
 
     def data(self, found: Studied) -> dict[str, Any]:
-        best = [{"point": k, "hold": int(found.counts[k]), "away": float(found.away[k])} for k in found.best]
-        resolved = least_change(len(found.shares))
+        resolved, best = least_change(len(found.shares)), int(found.counts.max())
         return {"statements": found.chances, "resolved": resolved, "best": best} if found.judged else {}
 
     def tables(self, found: Studied) -> Iterator[SmallTable]:
@@ -302,6 +302,7 @@ class RunningInSensitivity(Readings):
         yield study.runs_table("Over all points", {NAMES[case]: runs for case, runs in groups})
 
     def notes(self, found: Studied) -> Iterator[str]:
+        yield from self.told_of_campaign(found.frame)
         if found.judged:
             yield fitted_note(found)
 

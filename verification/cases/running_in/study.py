@@ -12,21 +12,32 @@ nothing here is a row.
 
 from __future__ import annotations
 
+import csv
 import gzip
 import hashlib
-import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from importlib import resources
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from sam.scene import CounterSurface, Hardening, Plasticity, Result, Scene, Status
-from verification.cases.case import SAM, Case, Context, SmallTable, with_grid, with_keys, with_loading
+from verification.cases.case import (
+    SAM,
+    Case,
+    Context,
+    Measured,
+    SmallTable,
+    with_grid,
+    with_keys,
+    with_loading,
+)
 from verification.compare.running_in_measures import History, Scar, Spread
 from verification.runs.store import identity, short
 
@@ -51,6 +62,10 @@ SHARES = {"isotropic": 0.0, "half and half": 0.5, "kinematic": 1.0}
 """Ways to harden -> share of the hardening that back-stresses have. Assumed: no cyclic curve is known."""
 LARGEST, POINTS = 0.2, 60  # of the plastic strain in the table of a yield stress, and its rows
 CUBIC, GIGA, NAN = 1e18, 1e-9, float("nan")
+
+
+FOLDER = resources.files(__package__)
+"""Where campaigns are."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +178,7 @@ class Run:
     scene: Scene
     result: Result
     again: bool = False
-    kept: Result | None = None
+    kept: Kept | None = None
     solved: bool = True
 
     @cached_property
@@ -264,33 +279,31 @@ cycle wear_volume_m3 friction_coefficient sa_m protected_fraction p_max_Pa new_s
 raw_volume_m3 roof_volume_m3 filled_volume_m3 yield_excess flow_residual peeq_max""".split()
 
 
-@dataclass(frozen=True)
-class Campaign:
-    """Runs that take hours, solved once. made: size, commit and date; results: digest of a scene -> its
-    status and the columns KEPT of its cycles, to six digits.
+class Kept(NamedTuple):
+    """What a campaign has of a run. result: its status and the columns KEPT of its cycles, to six digits;
+    case: whose campaign; made: the number of its runs, commit and date.
     """
 
-    made: str = ""
-    results: Mapping[str, Result] = field(default_factory=dict)
+    result: Result
+    case: str
+    made: str
 
-    @classmethod
-    def of(cls, case: str) -> Campaign:
-        """That of a case, empty where it has none."""
-        import pandas as pd
 
-        packed = resources.files(__package__).joinpath(f"{case}.csv.gz")
-        if not packed.is_file():
-            return cls()
-        lines = gzip.decompress(packed.read_bytes()).decode()
-        made, rows = (
-            lines.partition("\n")[0],
-            pd.read_csv(io.StringIO(lines), comment="#", dtype={"scene": str}),
-        )
-        results = {}
-        for digest, own in rows.groupby("scene", sort=False):
-            cycles = own[KEPT].dropna(axis="columns", how="all").to_dict("list")
-            results[str(digest)] = Result(SAM, Status(own["status"].iloc[0]), {}, {"cycles": cycles})
-        return cls(made.removeprefix("# "), results)
+@cache
+def campaigns() -> Mapping[str, Kept]:
+    """Digest of a scene -> its run, of all studies beside this module that take hours and were solved."""
+    found = {}
+    for file in FOLDER.iterdir():
+        case, _, ending = file.name.partition(".")
+        if ending == "csv.gz":
+            made, *lines = gzip.decompress(file.read_bytes()).decode().splitlines()
+            for digest, rows in groupby(csv.DictReader(lines), key=itemgetter("scene")):
+                own = list(rows)
+                cycles = {name: [float(row[name] or NAN) for row in own] for name in KEPT}
+                there = {name: values for name, values in cycles.items() if not np.isnan(values).all()}
+                result = Result(SAM, Status(own[0]["status"]), {}, {"cycles": there})
+                found[digest] = Kept(result, case, made.removeprefix("# "))
+    return found
 
 
 def digest_of(scene: Scene) -> str:
@@ -328,11 +341,6 @@ class Readings(Case):
         """Whether a run is solved even where a campaign has it."""
         return True
 
-    @cached_property
-    def campaign(self) -> Campaign:
-        """What is taken from it at the full level; it was made by `keep`."""
-        return Campaign.of(self.name)
-
     def scenes(self, context: Context) -> dict[tuple, tuple[str, Scene]]:
         """Key -> label and scene of its run."""
         return {
@@ -346,76 +354,94 @@ class Readings(Case):
         return framed(self.runs(context), PARTS, self.numbers)
 
     def ahead(self, context: Context) -> Iterable[Scene]:
-        kept = self.campaign.results
         for key, (_, scene) in self.scenes(context).items():
-            if not kept or self.solved_again(*key) or digest_of(scene) not in kept:
+            if self.solved_again(*key) or digest_of(scene) not in campaigns():
                 yield scene
 
     def then(self, scene: Scene, result: Result) -> Scene | None:
         at_edge = result.status is Status.PLASTIC_ZONE_AT_GRID_EDGE
         return deeper(scene) if at_edge and scene.grid.depths[-1] < DEEPER[-1][0] else None
 
-    def every(self, context: Context, kept: Mapping[str, Result]) -> Iterator[tuple[tuple, str, Run]]:
-        """Key, label and run, those with deeper layers after those that they replace."""
+    def every(self, context: Context, *, campaign: bool = False) -> Iterator[tuple[tuple, str, Run]]:
+        """Key, label and run, those with deeper layers after those that they replace. campaign: solve what
+        that of this case is to have, and not only what `solved_again` asks for.
+        """
         for key, (label, first) in self.scenes(context).items():
             below: Scene | None = first
             while below is not None:
                 scene = below
-                old = kept.get(digest_of(scene)) if kept else None
-                now = old is None or self.solved_again(*key)
-                result = context.solve(SAM, scene, label, demand=False) if now else old
+                old = campaigns().get(digest_of(scene))
+                now = old is None or (old.case == self.name if campaign else self.solved_again(*key))
+                result = context.solve(SAM, scene, label, demand=False) if now else old.result
                 # without the fields, of which all runs have gigabytes: their files have them
-                yield (
-                    key,
-                    label,
-                    Run(scene, replace(result, fields=None, grids={}), scene is not first, old, now),
-                )
+                bare = replace(result, fields=None, grids={})
+                yield key, label, Run(scene, bare, scene is not first, old, now)
                 below, label = self.then(scene, result), f"{label}-deeper"
 
     def runs(self, context: Context) -> dict[tuple, Run]:
         """What ran, or was kept, by key."""
-        kept = self.campaign.results if context.level == "full" else {}
-        return {key: run for key, _, run in self.every(context, kept)}
+        return {key: run for key, _, run in self.every(context)}
 
     def keep(self, context: Context, path: Path) -> None:
-        """Solve all runs, or take them from the store, and write what a campaign has of them, with the commit
-        of the last one. No command calls it: `case_of(name).keep(context, path)`, once, with a path beside
-        this module.
+        """Solve all runs that no other study has, or take them from the store, and write what a campaign has
+        of them, with the commit of the last one. No command calls it: `case_of(name).keep(context, path)`,
+        once, with a path beside this module.
         """
         import pandas as pd
 
         rows = []
-        for _, label, one in self.every(context, {}):
-            cycles = one.result.tables["cycles"]
-            own = pd.DataFrame({name: cycles[name] for name in KEPT if name in cycles})
-            who = {"scene": digest_of(one.scene), "run": label, "status": str(one.result.status)}
-            rows.append(
-                own.reindex(range(max(len(own), 1))).assign(**who)
-            )  # one that ended in its first cycle
+        for _, label, one in self.every(context, campaign=True):
+            if one.solved:
+                cycles = one.result.tables["cycles"]
+                own = pd.DataFrame({name: cycles[name] for name in KEPT if name in cycles})
+                who = {"scene": digest_of(one.scene), "run": label, "status": str(one.result.status)}
+                own = own.reindex(range(max(len(own), 1)))  # of one that ended in its first cycle too
+                rows.append(own.assign(**who))
         last = list(context.sources.values())[-1]
         made = f"# {len(rows)} runs, {short(last.commit)}, {last.created[:10]}\n"
         table = pd.concat(rows).reindex(columns=["scene", "run", "status", *KEPT])
-        path.write_bytes(
-            gzip.compress(f"{made}{table.to_csv(index=False, float_format='%.6g')}".encode(), mtime=0)
-        )
+        text = f"{made}{table.to_csv(index=False, float_format='%.6g')}"
+        path.write_bytes(gzip.compress(text.encode(), mtime=0))
+
+    def measure(self, found: Any) -> dict[str, Measured]:
+        """lost: share of a frame that did not converge; campaign: what runs that are solved again differ by
+        in the median, 0 where there is no campaign.
+        """
+        off = apart_from_campaign(found) if found["run"].map(lambda one: bool(one.kept)).any() else [0.0]
+        lost = 1.0 - float(found["converged"].mean())
+        return {"lost": Measured(lost), "campaign": Measured(float(np.median(off)))}
 
     def told_of_campaign(self, found: DataFrame) -> Iterator[str]:
-        """How many runs are from it, and how many of those were solved again."""
-        if not (solved := found["run"].map(lambda one: one.solved)).all():
+        """How many runs are from which, and how many of those were solved again."""
+        taken = [one.kept for one in found["run"] if not one.solved]
+        if taken:
             off = apart_from_campaign(found)
+            made = "; ".join(dict.fromkeys(f"{one.case}: {one.made}" for one in taken))
             yield (
-                f"Taken from a campaign ({self.campaign.made}): {(~solved).sum()} of {len(found)} runs; "
-                f"solved again and held against it: {len(off)}, whose friction differs in any cycle by "
+                f"Taken from campaigns ({made}): {len(taken)} of {len(found)} runs; "
+                f"solved again and held against them: {len(off)}, whose friction differs in any cycle by "
                 f"{np.median(off):.2g} in the median and {np.max(off):.2g} at most."
             )
 
 
 def apart_from_campaign(found: DataFrame) -> list[float]:
-    """Of each run that is solved again the largest difference of the friction in any cycle from that of a
-    campaign; NaN alone where there is none.
+    """Of each run that is solved again the largest difference of the friction from that of a campaign, in any
+    cycle that both have; NaN alone where there is none.
     """
-    twice = [(one.history, History.of(one.kept.tables)) for one in found["run"] if one.solved and one.kept]
-    return [outside(one.friction - old.friction, 0.0, 0.0) for one, old in twice] or [NAN]
+    off = []
+    for one in found["run"]:
+        if one.solved and one.kept:
+            pair = (
+                each.tables["cycles"].get("friction_coefficient", ())
+                for each in (one.result, one.kept.result)
+            )
+            off.append([abs(a - b) for a, b in zip(*pair, strict=False)])
+    return [max(each) for each in off if each] or [NAN]
+
+
+def solved_of(found: DataFrame) -> Any:
+    """The runs of a frame that are no campaign's and converged: those of which there are all tables."""
+    return found.loc[found["converged"] & found["run"].map(lambda one: one.solved), "run"]
 
 
 def runs_table(caption: str, groups: Mapping[str, Iterable[Run]]) -> SmallTable:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Stresses under Hertz pressure and full-slip traction, summed over patches, against Hamilton."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -6,8 +6,6 @@ broken it ends in a segmentation fault, which then ends the child alone. `offscr
 all that others use; `pictures` says what there is to draw, from the `meshes` of a run, and `view` draws it.
 """
 
-from __future__ import annotations
-
 from verification.figures.space.offscreen import CannotDrawError, draw, draw_run
 
 __all__ = ["CannotDrawError", "draw", "draw_run"]

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The process that draws, started by `offscreen`: NAME.png of the pictures of a run, or one as NAME.html."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from dataclasses import replace

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What pictures in space are made of, as meshes in µm whose z points up."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Drawing without a display: which library VTK can use, and the child process in which it draws."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import signal

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The kinds of pictures in space: what each shows, and which run has it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

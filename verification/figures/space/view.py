@@ -5,8 +5,6 @@ Lengths are in µm and z points up, out of the body. The view is a parallel proj
 that lengths along an axis are read off everywhere with the same ticks.
 """
 
-from __future__ import annotations
-
 import html
 import io
 import re

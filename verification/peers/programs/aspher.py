@@ -5,8 +5,6 @@ space.
 settings: tolerance, and what else `solve_nested` takes (backend, single_precision, active_set).
 """
 
-from __future__ import annotations
-
 from importlib import metadata
 
 import numpy as np

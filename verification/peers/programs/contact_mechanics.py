@@ -4,8 +4,6 @@
 Its free-standing half-space, a convolution on the doubled domain, and its solver after Polonsky & Keer.
 """
 
-from __future__ import annotations
-
 from importlib import metadata
 
 import numpy as np

@@ -3,8 +3,6 @@
 step.
 """
 
-from __future__ import annotations
-
 from importlib import metadata
 from typing import Any
 

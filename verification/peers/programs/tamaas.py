@@ -7,8 +7,6 @@ job is periodic. Elastic-plastic: its volume integral method, periodic in x and 
 d peeq (measured: (mises - sigma_y)/peeq of its result is that number).
 """
 
-from __future__ import annotations
-
 from importlib import metadata
 from typing import Any
 

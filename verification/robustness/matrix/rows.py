@@ -7,8 +7,6 @@ does otherwise is wrong, and so is one that dies of another exception, that nump
 are not finite.
 """
 
-from __future__ import annotations
-
 import time
 import tomllib
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The scenes, and the fits, of the robustness matrix: a base, and what `rows.toml` changes of it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from math import pi

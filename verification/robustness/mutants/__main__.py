@@ -9,8 +9,6 @@ Exit code 0: nothing is lost, and at least 95 % of the changed numbers of the co
 judgement of each as a file.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -11,8 +11,6 @@ becomes <= and any other comparison its opposite, by itself; each condition of a
 like is negated.
 """
 
-from __future__ import annotations
-
 import ast
 import operator
 from collections import Counter

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Equivalent mutants: what a perturbation changes in the numbers that small scenes return."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`frozen.csv`: by function what was killed and survived, and how a later run differs from it."""
 
-from __future__ import annotations
-
 import csv
 import json
 from collections import Counter, defaultdict

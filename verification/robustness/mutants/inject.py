@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A mutant put into this process: functions get other code, modules and classes other constants."""
 
-from __future__ import annotations
-
 import ast
 import functools
 import gc
@@ -25,7 +23,14 @@ def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Numbe
     """Change these of one module in this process; integers record their use, a table's row is one change."""
     forget(mutants[0].module)
     if mutants[0].kind == "row":
-        _put_row(mutants[0], factor)
+        table = getattr(importlib.import_module(mutants[0].module), mutants[0].function)()
+        kind, entry, place = mutants[0].text.split(" ")
+        rows, k = table[kind][entry], int(place)
+        if isinstance(rows, list):
+            rows[k] = (*rows[k][:-1], tuple(c * factor for c in rows[k][-1]))
+        else:
+            term = list(rows)[k]
+            rows[term] = tuple(c * factor for c in rows[term])
         return {}
     module = importlib.import_module(mutants[0].module)
     file = module.__file__
@@ -33,7 +38,11 @@ def put(mutants: Sequence[Mutant], factor: float = FACTOR) -> dict[Mutant, Numbe
     compiled, names = compile(tree, file, "exec"), {name: number for name, (_, number) in numbers.items()}
     vars(module).update(names)
     if any(mutant.code for mutant in mutants):
-        _swap_codes(file, compiled)
+        new = {(code.co_qualname, code.co_firstlineno): code for code in _codes(compiled)}
+        for function in living(FunctionType):
+            old = function.__code__
+            if old.co_filename == file and (code := new.get((old.co_qualname, old.co_firstlineno))):
+                function.__code__ = code
     if not all(mutant.code for mutant in mutants):
         _transplant(module, compiled, names)
     return dict(numbers.values())
@@ -53,31 +62,11 @@ def living(kind: type) -> list:
     return [thing for thing in gc.get_objects() if isinstance(thing, kind)]
 
 
-def _put_row(mutant: Mutant, factor: float) -> None:
-    """Multiply one row of the table that the module's function returns and remembers."""
-    table = getattr(importlib.import_module(mutant.module), mutant.function)()
-    kind, entry, place = mutant.text.split(" ")
-    rows, k = table[kind][entry], int(place)
-    if isinstance(rows, list):
-        rows[k] = (*rows[k][:-1], tuple(c * factor for c in rows[k][-1]))
-    else:
-        term = list(rows)[k]
-        rows[term] = tuple(c * factor for c in rows[term])
-
-
 def _codes(code: CodeType) -> Iterator[CodeType]:
     yield code
     for part in code.co_consts:
         if isinstance(part, CodeType):
             yield from _codes(part)
-
-
-def _swap_codes(file: str, compiled: CodeType) -> None:
-    new = {(code.co_qualname, code.co_firstlineno): code for code in _codes(compiled)}
-    for function in living(FunctionType):
-        old = function.__code__
-        if old.co_filename == file and (code := new.get((old.co_qualname, old.co_firstlineno))):
-            function.__code__ = code
 
 
 def _transplant(module: ModuleType, compiled: CodeType, numbers: dict[str, Number]) -> None:

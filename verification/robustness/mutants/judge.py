@@ -4,8 +4,6 @@
 The tests are collected once in this process, and each is run in a fork of it.
 """
 
-from __future__ import annotations
-
 import functools
 import gc
 import os

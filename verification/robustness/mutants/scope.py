@@ -5,8 +5,6 @@
 understood why no fast test kills them.
 """
 
-from __future__ import annotations
-
 import csv
 import functools
 import pkgutil

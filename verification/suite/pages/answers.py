@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The questions of the first page and their answers, by the rows, pairs and cells of `pages.toml`."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

@@ -3,8 +3,6 @@
 the studies that judge its statements. Where a study did not run, that is said.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +12,7 @@ from verification.suite.pages.stored import ShownCase, Stored
 
 PAGE = "running-in"
 READINGS, INPUTS, PHYSICS = "running-in", "running-in-sensitivity", "running-in-physics"
-FINER, WORDS = "running-in-cells", "running-in-readings"
+WORDS = "running-in-readings"
 STUDIES = {
     READINGS: "The comparison of both readings",
     INPUTS: "The study over the inputs",
@@ -84,7 +82,9 @@ def headline_of(stored: Stored) -> Headline | None:
         )
         return Headline(words, studies)
     data = {each.name: each.case.get("data", {}) for each in stored.ran.values()}
-    read, finer = (_together(data.get(name, {}).get("statements", {})) for name in (READINGS, FINER))
+    read, finer = (
+        _together(data.get(name, {}).get(of, {})) for name, of in ((READINGS, "statements"), (WORDS, "finer"))
+    )
     drawn, tried = (
         {each["statement"]: each for each in data.get(name, {}).get("statements", ())}
         for name in (INPUTS, PHYSICS)
@@ -101,7 +101,7 @@ def headline_of(stored: Stored) -> Headline | None:
     second = data.get(READINGS, {}).get("second_reading", "")
     depends = [*(_of_inputs(drawn, data[INPUTS]) if drawn else [missing(INPUTS)])]
     if tried:
-        counts = [each["held"] for each in data[PHYSICS]["physics"]]
+        counts = data[PHYSICS]["held"]
         depends.append(
             f"On one surface, which gives no probability, under each of {len(counts)} ways to harden and to "
             f"load it, {max(counts)} hold together at best; under the way of the paper {counts[0]}."
@@ -179,7 +179,7 @@ def _of_readings(read: Verdicts, finer: Verdicts, second: str) -> Iterator[str]:
     if coarse:
         yield (
             f"With the printed inputs {len(coarse)} of these {first} ({'; '.join(coarse)}) failed on finer "
-            "cells where those were tried, on one surface; not counting such, "
+            "cells where those were tried, on three surfaces of a quarter of the area; not counting such, "
             f"{first - len(coarse)} of {len(own)} hold."
         )
 
@@ -206,7 +206,7 @@ def _of_inputs(chances: Mapping[str, Mapping], data: Mapping) -> Iterator[str]:
         f"{f', first on {named}' * bool(named)}; of the others the study does not tell: it resolves "
         f"changes of {100 * data['resolved']:.0f} % and more between the halves of a range."
     )
-    if best := max((each["hold"] for each in data["best"]), default=0):
+    if best := data["best"]:
         yield (
             f"At the best of the points {best} hold together (fitted), which is no bound: "
             "nothing between the points was tried."

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The pages: an index, a page for each group of cases that ran, the index as Markdown, or all in one file."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import os
@@ -17,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
 from PIL import Image
 
 from verification.judging import LIMITS, RowStatus
@@ -37,7 +36,6 @@ from verification.suite.pages.answers import (
     unanswered,
 )
 from verification.suite.pages.headline import PAGE, headline_of
-from verification.suite.pages.mathml import formula, with_scripts
 from verification.suite.pages.stored import (
     GROUPS,
     LIMIT_SIGNS,
@@ -71,6 +69,21 @@ WORDS = {
 }
 """What a page is about, by its kind."""
 WIDE = 1600  # pixels: letters of a picture drawn wider than 8 inches are too small in half a page
+SIGNS = {
+    ">=": "≥",
+    "<=": "≤",
+    r"\bmu\b": "μ",
+    r"\bsigma_": "σ_",
+    r"\bs(?=[xyz]{2}\b)": "σ_",
+    r"\bp0\b": "p₀",
+    r"(?<=[0-9] )um\b": "µm",
+    r" %": "\N{NO-BREAK SPACE}%",
+}
+"""What is written in ASCII, as a pattern -> its sign."""
+IN_TEXT = re.compile(r"(?<![\w])([A-Za-zσετνμκδ])_([A-Za-z0-9]+)\b")
+LOWERED = re.compile(r"(?<![a-z]{4})(?<=\w)_([A-Za-z0-9]+)|(?<=[σε])([xyz]{2})")
+"""What is a subscript in a formula, where a word of four letters before the dash is the name of a key."""
+RAISED = re.compile(r"\^(\((?:[^()]|\([^()]*\))*\)|\{[^}]*\}|[−-]?[\w.]+)")
 _NUMBER = re.compile(r"[<>≤≥]? ?[+−-]?[0-9][^ ]*( [^ ]{1,4})?$")
 
 
@@ -170,6 +183,24 @@ def _size(png: Path) -> tuple[int, int]:
         return 0, 0
     with Image.open(png) as picture:
         return picture.size
+
+
+def with_scripts(text: str) -> Markup:
+    """A sentence in which σ_y0 has its subscript, and what is written in ASCII its sign."""
+    for pattern, sign in SIGNS.items():
+        text = re.sub(pattern, sign, text)
+    return Markup(IN_TEXT.sub(r"\1<sub>\2</sub>", str(escape(text))))
+
+
+def formula(text: str) -> Markup:
+    """A line of formulas, in which what follows `_` or `^`, by itself or in brackets, is a script."""
+
+    def raised(found: re.Match[str]) -> str:
+        power = found[1][1:-1] if found[1][0] in "({" else found[1]
+        return f"<sup>{RAISED.sub(raised, power)}</sup>"
+
+    lowered = LOWERED.sub(lambda found: f"<sub>{found[1] or found[2]}</sub>", str(escape(text)))
+    return Markup(RAISED.sub(raised, lowered))
 
 
 def numeric(table: Mapping) -> set[int]:

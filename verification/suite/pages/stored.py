@@ -3,8 +3,6 @@
 origin, and the page of each.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
