@@ -71,9 +71,8 @@ def _tensile(law: Tensile, folder: Path) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         content = {"young": law.young, "yield_stress": law.yield_stress, "exponent": law.exponent, **swift}
         write_atomically(folder / RECORD, json_text(content).encode())
-        write_atomically(
-            folder / CURVES, csv_text(CURVE[:2], zip(law.peeq, law.stress, strict=True)).encode()
-        )
+        curve = csv_text(CURVE[:2], zip(law.peeq, law.stress, strict=True))
+        write_atomically(folder / CURVES, curve.encode())
     print_table(("", "value", "definition"), rows)
     print(folder / CURVES)
     return 0

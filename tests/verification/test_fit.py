@@ -4,9 +4,12 @@ confidence that their noise leaves; bad data end in words; tensile tests give wh
 """
 
 import json
+import os
+import signal
 from dataclasses import replace
 from functools import partial
 from importlib import resources
+from multiprocessing import get_context
 
 import numpy as np
 import pandas as pd
@@ -44,14 +47,10 @@ def of_hertz(test, values, fine):
 
 def of_law(test, values, fine):
     """An approach that depends on yield stress and, by the force over the squared radius, on hardening."""
-    load = test.points.x / test.scene.counterbody.radius**2 / 1e7
+    radius = test.scene.counterbody.radius
+    load = test.points.x / radius**2 / 1e7
     flow = values[YIELD] / 6e8 * (values[SLOPE] / 1e10) ** (0.1 * load)
-    return Answer(
-        hertz(test.points.x, radius=test.scene.counterbody.radius) * (1.0 + load / flow),
-        0.0 * load,
-        0.02,
-        0.05,
-    )
+    return Answer(hertz(test.points.x, radius=radius) * (1.0 + load / flow), 0.0 * load, 0.02, 0.05)
 
 
 def defined(depth, unknown, scene=ELASTIC, **test):
@@ -83,9 +82,9 @@ def test_the_noise_is_estimated_and_the_change_of_the_grid_is_in_the_interval():
     found = fit(defined(depth, {"body.young": [100e9, 400e9]}), of_hertz)
     assert found.settled and found.values["body.young"] == pytest.approx(YOUNG, rel=2e-3)
     assert found.sigma[0] == pytest.approx(2e-9, rel=0.25)
-    # 2 % of the depths d, two standard deviations of an error that is the same at all of them
+    # 2 % of the depths d, three times an error of second order that is the same at all of them
     d = SHARE ** (2 / 3)
-    expected = 0.01 * 1.5 * d.mean() / np.sqrt((d**2).mean())
+    expected = 0.02 / 3 * 1.5 * d.mean() / np.sqrt((d**2).mean())
     assert np.sqrt(found.numerical_part[0, 0]) == pytest.approx(expected, rel=0.03)
 
 
@@ -121,7 +120,7 @@ def test_oliver_and_pharr_read_the_modulus_of_an_elastic_curve_within_their_own_
     assert contact == pytest.approx(depth / 2.0, rel=1e-6) and young == pytest.approx(YOUNG, rel=1e-3)
 
 
-def test_a_fit_that_was_interrupted_goes_on_to_the_same_bytes(folder, samfem, monkeypatch):
+def test_a_fit_that_was_killed_goes_on_to_the_same_bytes(folder, samfem, monkeypatch):
     force, solve, solved, known = np.linspace(0.02, 1.0, 12), models.solve, [], {}
     frame = pd.DataFrame({"Load (mN)": 1e3 * force, "depth [nm]": 1e9 * hertz(force, 180e9)})
     frame.to_csv(folder / "curve.csv", index=False)
@@ -134,7 +133,7 @@ def test_a_fit_that_was_interrupted_goes_on_to_the_same_bytes(folder, samfem, mo
 
     def counted(scene, *args, stop=1000, **how):
         if len(solved) == stop:
-            raise KeyboardInterrupt
+            os.kill(os.getpid(), signal.SIGKILL)
         solved.append(scene.model_dump_json())
         if solved[-1] not in known:
             known[solved[-1]] = solve(scene, *args, **how)
@@ -149,11 +148,13 @@ def test_a_fit_that_was_interrupted_goes_on_to_the_same_bytes(folder, samfem, mo
     assert record["model_solves"] <= 15 and load_scene(folder / "a" / "scene.toml").body.young == row["value"]
     monkeypatch.setenv("SAMFEM_STORE", str(folder / "b.store"))
     monkeypatch.setattr(models, "solve", partial(counted, stop=whole + 5))
-    samfem("fit", "fit.toml", "--out", "b", code=130)
-    assert not (folder / "b" / "fit.json").exists()
+    process = get_context("fork").Process(target=samfem, args=("fit", "fit.toml", "--out", "b"))
+    process.start()
+    process.join()
+    assert process.exitcode == -signal.SIGKILL and not (folder / "b" / "fit.json").exists()
     monkeypatch.setattr(models, "solve", counted)
     samfem("fit", "fit.toml", "--out", "b")
-    assert len(solved) == 2 * whole  # nothing is solved again
+    assert len(solved) == 2 * whole - 5  # nothing is solved again
     for path in (folder / "a").iterdir():
         assert path.read_bytes() == (folder / "b" / path.name).read_bytes(), path.name
 
@@ -169,17 +170,12 @@ def test_a_body_that_yields_is_read_at_its_forces_and_its_dent(tmp_path):
     solves = Solves(made.model, Store(tmp_path))
     curve, single = (solves(test, {YIELD: 400e6}, True) for test in made.tests)
     up, down = curve.depths[:50], curve.depths[50:][::-1]
-    assert (
-        (np.diff(up) > 0).all()
-        and up[-1] == pytest.approx(down[-1], rel=1e-3)
-        and (down[:-2] > up[:-2]).all()
-    )
+    assert (np.diff(up) > 0).all() and (down[:-2] > up[:-2]).all()
+    assert up[-1] == pytest.approx(down[-1], rel=1e-3)
     assert 0.0 < single.depths[0] < down[0] and curve.strain > 0.0
 
 
-@pytest.mark.parametrize(
-    "row", [row for row in all_rows("full") if row.topic == "fits"], ids=lambda row: row.name
-)
+@pytest.mark.parametrize("row", [row for row in all_rows("full") if row.topic == "fits"])
 def test_bad_data_end_in_words(row):
     cell = judge(row, models.FEM, Bench())
     assert cell.kind == "error", cell.text

@@ -157,10 +157,6 @@ class Test:
             _put(tables, key, value)
         return Scene(**tables)
 
-    def loaded(self, force: float, radius: float) -> Scene:
-        """The same test with another force in N and another radius in m."""
-        return _with_load(self.scene, force, radius=radius)
-
 
 @dataclass(frozen=True)
 class Definition:
@@ -290,7 +286,7 @@ def _put(tables: dict[str, Any], key: str, value: float) -> None:
     inner[place] = value
 
 
-def _with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
+def with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
     """The scene with a force and what is given of its ball."""
     tables = tables_of(scene)
     steps = scene.loading.steps if scene.loading.steps > 1 else STEPS
@@ -323,7 +319,7 @@ def _test(k: int, test: Measured, scene: Scene, measured: tuple[Points, str]) ->
     force = test.force or float(points.x.max(initial=0.0))
     if not 0.0 < force < 1e9:
         raise SceneError([Problem("force", f"{force:g} N", "positive where the ball is pressed on")], source)
-    own = _with_load(scene, force, radius=test.radius, young=test.young, poisson=test.poisson)
+    own = with_load(scene, force, radius=test.radius, young=test.young, poisson=test.poisson)
     ball = own.counterbody
     assert ball is not None and ball.radius is not None
     elastic = float((0.75 * force / contact_modulus(own)) ** (2.0 / 3.0) * ball.radius ** (-1.0 / 3.0))

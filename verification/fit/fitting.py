@@ -18,10 +18,11 @@ N that of the numerical error over the points of a branch of a test, e = d_f - d
 
     N_ij = (e/K)^2 exp(-(pi m (u_i - u_j)/U)^2/2),    e^2 the mean of e_i^2, u = sqrt(x), U its range. (c)
 
-A change by half the grid is the bound of verification/uncertainty/rule.py, K = 2 standard deviations. m is
-how often e_i changes its sign on the branch: a Gaussian process with this covariance does so as often per U
-(Rice, Bell Syst. Tech. J. 24 (1945) 46, Eq. 3.3-11). The edge of the contact moves over elements, whose
-number in the radius goes with u, and the error of d_f passes zero at other loads than e does.
+An error of second order is a third of its change by half the grid (Richardson), K = 3: as a mean over a
+branch that is one standard deviation, and needs no factor of verification/uncertainty/rule.py, which is for a
+single value. m is how often e_i changes its sign on the branch: a Gaussian process with this covariance does
+so as often per U (Rice, Bell Syst. Tech. J. 24 (1945) 46, Eq. 3.3-11). The edge of the contact moves over
+elements, whose number in the radius goes with u, and the error of d_f passes zero at other loads than e does.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from scipy.optimize import least_squares
 from scipy.stats import norm, t as student
 
 from sam.scene import Scene
-from verification.fit.definition import COMPLIANCE, ZERO, Definition, Parameter, Test, Variables
+from verification.fit.definition import COMPLIANCE, ZERO, Definition, Parameter, Test, Variables, with_load
 from verification.fit.measured import Points
 from verification.fit.solves import Answer, Answers, FitError
 
@@ -47,17 +48,14 @@ STEP, LEAST = (
     0.1,
     0.02,
 )  # of the width of the bounds for a difference and an update: less shows the moving mesh
-FIRST, LATER = (
-    6,
-    3,
-)  # evaluations of all tests on the coarse grid, and in a round on the fine one, with the start
+FIRST, LATER = 6, 3  # evaluations of all tests on the coarse grid, and in a round on the fine one
 ROUNDS = 3  # on the fine grid, at most; after each the noise is estimated
 SETTLED = 0.3  # standard deviations by which the parameters may still move in the last round
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
-NAMED = 0.3  # weight of a parameter in a combination, from which on it is named
+NAMED = 0.4  # of the largest weight in a combination, from which on a parameter is named
 FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))
 """(force, radius) of the further tests that are looked at, over those of the first."""
-BOUND = 2.0  # standard deviations, K of (c)
+RICHARDSON = 3.0  # K of (c); by twice the cells, depths of two steels are off by 0.26 of the change
 LOOSE = 100.0  # widths of the bounds: a standard deviation that says that nothing is known
 DRAWS, SEED = 400, 1
 
@@ -117,8 +115,11 @@ class Fitted:
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Parameter -> its confidence interval in SI, within its bounds."""
-        ends = zip(self.parameters, self.sought, self.half_widths, strict=True)
-        return {p.name: _clipped(p, x - w, x + w) for p, x, w in ends}
+        found = {}
+        for p, x, w in zip(self.parameters, self.sought, self.half_widths, strict=True):
+            low, high = np.clip([float(p.value(x - w)), float(p.value(x + w))], p.low, p.high)
+            found[p.name] = float(low), float(high)
+        return found
 
     @property
     def correlations(self) -> np.ndarray:
@@ -128,19 +129,23 @@ class Fitted:
 
     @cached_property
     def open_combinations(self) -> list[tuple[float, dict[str, float]]]:
-        """What is not determined: half-width in logarithms, and the parameters of a singular vector with
-        their weights, the widest first.
+        """What is not determined: eigenvectors of the covariance, scaled so that the largest weight is one,
+        along which that parameter has a half-width beyond DETERMINED, the widest first, with their weights.
         """
         n = len(self.definition.of_scene)
         values, vectors = np.linalg.eigh(self.covariance[:n, :n])
-        wide = QUANTILE * np.sqrt(values)
         found = []
-        for width, vector in sorted(zip(wide, vectors.T, strict=True), key=lambda pair: -pair[0]):
+        for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
+            largest = vector[np.abs(vector).argmax()]
+            width, named = (
+                QUANTILE * np.sqrt(value) * abs(largest),
+                zip(self.parameters, vector, strict=False),
+            )
             if width > DETERMINED:
-                vector = vector * np.sign(vector[np.abs(vector).argmax()])
-                named = zip(self.parameters, vector, strict=False)
-                found.append((float(width), {p.name: float(v) for p, v in named if abs(v) > NAMED}))
-        return found
+                found.append(
+                    (float(width), {p.name: float(v / largest) for p, v in named if abs(v / largest) > NAMED})
+                )
+        return sorted(found, key=lambda each: -each[0])
 
     def scene(self, values: Variables | None = None) -> Scene:
         """The first test's scene with the parameters."""
@@ -152,9 +157,8 @@ class Fitted:
         (n,) each, of parameters within their bounds. Of the layer, where it is sought.
         """
         strain = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 40) * self.strain])
-        plasticity = self.scene(
-            {p.name: float(np.clip(values[p.name], p.low, p.high)) for p in self.parameters}
-        ).body.plasticity
+        inside = {p.name: float(np.clip(values[p.name], p.low, p.high)) for p in self.parameters}
+        plasticity = self.scene(inside).body.plasticity
         assert plasticity is not None
         layer = any(".layer." in p.name for p in self.parameters)
         law = plasticity.layer if layer and plasticity.layer is not None else plasticity
@@ -173,12 +177,6 @@ class Fitted:
         draws = np.random.default_rng(SEED).multivariate_normal(self.sought, self.covariance, DRAWS)
         ends = [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2]
         return *self.curve(self.values), *np.quantile([stress(each) for each in draws], ends, 0)
-
-
-def _clipped(p: Parameter, low: float, high: float) -> tuple[float, float]:
-    """An interval of a variable in SI, within the bounds."""
-    ends = np.clip([float(p.value(low)), float(p.value(high))], p.low, p.high)
-    return float(ends[0]), float(ends[1])
 
 
 def fit(definition: Definition, answers: Answers, *, ahead: bool = True) -> Fitted:
@@ -298,14 +296,21 @@ class _Search:
         return added
 
     def jacobian(self, x: np.ndarray) -> np.ndarray:
-        """Derivatives of the residuals, (points, p), by differences; those of the machine need no solve."""
+        """Derivatives of the residuals, (points, p), by differences; those of the machine need no solve. Of a
+        step that the points cannot show at CONFIDENCE the mesh has too large a part: it goes to a bound.
+        """
         base, rest, columns = self.depths(x), self.machine(x), []
         for k, p in enumerate(self.parameters):
-            other, step = x.copy(), STEP * self.wide[k]
-            step *= 1.0 if p.sought(p.high) - x[k] > step else -1.0
-            other[k] += step
-            new, old = (self.depths(other), base) if k < self.n else (self.machine(other), rest)
-            columns.append(self.whitened([(f - g) / step for f, g in zip(new, old, strict=True)]))
+            low, high = (float(p.sought(end)) - x[k] for end in (p.low, p.high))
+            usual = STEP * self.wide[k]
+            for step in (usual if high > usual else -usual, max(low, high, key=abs)):
+                other = x.copy()
+                other[k] += step
+                new, old = (self.depths(other), base) if k < self.n else (self.machine(other), rest)
+                change = self.whitened([f - g for f, g in zip(new, old, strict=True)])
+                if np.linalg.norm(change) > QUANTILE:
+                    break
+            columns.append(change / step)
         return np.stack(columns, axis=1)
 
     def of_noise(self, jacobian: np.ndarray) -> np.ndarray:
@@ -331,7 +336,7 @@ class _Search:
                 u, e = np.sqrt(test.points.x[branch]), change[branch]
                 turns = np.count_nonzero(np.diff(np.sign(e[np.argsort(u)])))
                 away = np.pi * turns * (u[:, None] - u) / (np.ptp(u) or 1.0)
-                blocks.append((e**2).mean() / BOUND**2 * np.exp(-(away**2) / 2.0))
+                blocks.append((e**2).mean() / RICHARDSON**2 * np.exp(-(away**2) / 2.0))
         return np.asarray(block_diag(*blocks))
 
     def further(self, fitted: Fitted) -> tuple[Further, ...]:
@@ -343,9 +348,8 @@ class _Search:
             force, radius = more * load, larger * ball.radius
             share, back = np.linspace(0.05, 1.0, 20), np.arange(40) >= 20
             points = Points(np.tile(share, 2) * force, np.ones(40), back)
-            test = Test(
-                f"F {more:g}, R {larger:g}", "curve", first.loaded(force, radius), points, self.sigma[0]
-            )
+            scene = with_load(first.scene, force, radius=radius)
+            test = Test(f"F {more:g}, R {larger:g}", "curve", scene, points, self.sigma[0])
             alone = replace(self.definition, tests=(test,), of_machine=())
             try:
                 own = _Search(alone, self.answers).jacobian(fitted.sought[: self.n])

@@ -79,9 +79,8 @@ def read_columns(content: bytes, kind: str, units: Sequence[str], source: str) -
             values = pd.to_numeric(frame.iloc[:, k], errors="coerce").to_numpy(float)
             if not np.isfinite(values).all():
                 row = int(np.argmin(np.isfinite(values)))
-                raise refused(
-                    source, f"{head}, row {row + 1}", str(frame.iloc[row, k]), "a number in each row"
-                )
+                what, number = f"{head}, row {row + 1}", str(frame.iloc[row, k])
+                raise refused(source, what, number, "a number in each row")
             found[name] = values * _factor(COLUMNS[name][0], unit, head, source)
     if "height" in found and "depth" not in found:
         found["depth"] = -found.pop("height")

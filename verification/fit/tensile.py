@@ -82,9 +82,7 @@ def tensile(
     plastic = total - true / young
     beyond = plastic > OFFSET / 20.0
     total, true, plastic = total[beyond], true[beyond], plastic[beyond]
-    exponent = least_squares(lambda n: limit * (young * total / limit) ** n[0] - true, [0.1], x_scale=0.1).x[
-        0
-    ]
+    power = least_squares(lambda n: limit * (young * total / limit) ** n[0] - true, [0.1], x_scale=0.1)
 
     def misfit(x: np.ndarray) -> np.ndarray:
         return np.asarray(np.exp(x[0]) * (np.exp(x[1]) + plastic) ** x[2] - true / limit)
@@ -96,7 +94,7 @@ def tensile(
     means = [(plastic[place == j].mean(), true[place == j].mean()) for j in range(rows) if (place == j).any()]
     peeq, flow = np.array(means).T
     peeq[0] = 0.0
-    return Tensile(float(young), limit, float(exponent), swift, peeq, isotonic_regression(flow).x)
+    return Tensile(float(young), limit, float(power.x[0]), swift, peeq, isotonic_regression(flow).x)
 
 
 def read_tensile(path: str | Path) -> Tensile:

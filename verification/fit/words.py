@@ -96,10 +96,8 @@ def classical(fitted: Fitted) -> Iterator[tuple[str, str, str]]:
         if test.kind != "curve" or not back.any():
             continue
         young, depth = oliver_pharr(test)
-        fitted_young = fitted.scene().body.young
-        why = (
-            f"{100 * (young / fitted_young - 1):+.1f} % of the fit: no pile-up, a power law of the upper half"
-        )
+        off = f"{100 * (young / fitted.scene().body.young - 1):+.1f} %"
+        why = f"{off} of the fit: no pile-up, a power law of the upper half"
         yield f"E of {test.name} by Oliver & Pharr", with_prefix(young, "Pa"), why
         radius = sqrt(depth * (2.0 * ball.radius - depth))
         hardness, strain = force / (pi * radius**2), TABOR_STRAIN * radius / ball.radius
@@ -109,11 +107,8 @@ def classical(fitted: Fitted) -> Iterator[tuple[str, str, str]]:
         words = f"fully plastic contact; {100 * (flow / own - 1):+.0f} % of the fit's curve there"
         if strain > x[-1]:
             words += ", which ends before"
-        yield (
-            f"flow stress of {test.name} by Tabor at a strain of {strain:.3g}",
-            with_prefix(flow, "Pa"),
-            words,
-        )
+        name = f"flow stress of {test.name} by Tabor at a strain of {strain:.3g}"
+        yield name, with_prefix(flow, "Pa"), words
 
 
 def oliver_pharr(test: Test) -> tuple[float, float]:
@@ -132,9 +127,8 @@ def oliver_pharr(test: Test) -> tuple[float, float]:
     upper = force > UPPER * top
 
     def misfit(x: np.ndarray) -> np.ndarray:
-        return np.asarray(
-            x[0] * np.clip(depth[upper] / deepest - x[2], 1e-9, None) ** x[1] - force[upper] / top
-        )
+        found = x[0] * np.clip(depth[upper] / deepest - x[2], 1e-9, None) ** x[1]
+        return np.asarray(found - force[upper] / top)
 
     last = min(0.9, float(depth.min()) / deepest)
     start = [1.0 / (1.0 - last) ** 1.4, 1.4, last]

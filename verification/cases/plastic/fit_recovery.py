@@ -14,7 +14,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,7 @@ from verification.fit.words import oliver_pharr
 from verification.runs.model_range import SWIFT as STEEL_MEASURED, errors
 from verification.runs.models import FEM, SAM
 from verification.runs.store import Store, default_store, kept_coefficients
-from verification.runs.tables import columns_text, read_any_table
+from verification.runs.tables import read_any_table
 
 NOISES, DRAWS, SEED = (0.005, 0.01, 0.03), 40, 7
 INSIDE = 0.6
@@ -38,6 +37,7 @@ INSIDE = 0.6
 SCATTER = 0.003
 """Of logarithms of depths, by where the edge of the contact falls in its cell."""
 SHARE = np.linspace(0.05, 1.0, 20)
+STEP = 1e-5  # of a coordinate, for derivatives of the quadratics
 KEPT, GRIDS = "fit_recovery.csv", {"coarse": (SAM, False), "fine": (SAM, True), "data": (FEM, True)}
 
 
@@ -124,24 +124,24 @@ LAWS = {
         },
         [(2e-4, 2.0), (6e-5, 2.0)],
         {"cells": [31, 31]},
-        (*range(6), 9, 10, 11),
+        (*range(7), *range(9, 13)),
     ),
 }
 
 
 def recovered(context: Context) -> Iterator[dict[str, Any]]:
     """A row for each law and noise, of all draws, and one for each law on its quadratics."""
+    from pandas import DataFrame
+
     for number, name in enumerate(LAWS, start=1):
         context.progress(context.case, number, len(LAWS))
         yield {"sweep": "kept", "law": name, "held-out": held_out(name)}
         for noise in NOISES:
             draws = np.random.default_rng(SEED)
-            found = np.array([one(name, noise, draws) for _ in range(DRAWS)])
-            shown = found[:, 0].mean(), *np.median(found[:, 1:], axis=0)
-            names = ("covered", "wide", "curve-error", "correlation")
-            yield {"sweep": "recovered", "law": name, "noise": noise} | dict(
-                zip(names, map(float, shown), strict=True)
-            )
+            found = DataFrame([one(name, noise, draws) for _ in range(DRAWS)])
+            shown = found.median().to_dict() | {"covered": found["covered"].mean()}
+            shown["over-least"] = shown["curve-error"] / shown["curve-least"]
+            yield {"sweep": "recovered", "law": name, "noise": noise, **shown}
     yield {"sweep": "finite", "law": "swift", "curve-bias": of_finite_strain()}
 
 
@@ -161,10 +161,12 @@ def of_finite_strain() -> float:
 
 def one(
     name: str, noise: float, draws: np.random.Generator, context: Context | None = None
-) -> tuple[float, ...]:
-    """Share of the parameters in their confidence intervals, median of the half-widths over the bound of
-    Cramer and Rao, largest relative error of the yield curve up to the largest strain, and the correlation of
-    the first parameter and the last. With a context both models are solved, else the table answers.
+) -> dict[str, float]:
+    """Of a draw: share of the parameters in their confidence intervals; median of the half-widths over the
+    bound of Cramer and Rao; largest relative error of the yield curve to the largest strain; its median for
+    parameters with the covariance of the bound; correlation of the first parameter and the last.
+
+    With a context both models are solved, else the table answers.
     """
     law, answers = LAWS[name], partial(answer, name)
     at = draws.uniform(-INSIDE, INSIDE, len(law.unknown))
@@ -174,12 +176,21 @@ def one(
         answers = Solves(SAM, context.store)
     sizes = noise * exact[:, -1]
     data = exact + sizes[:, None] * draws.normal(size=exact.shape)
-    defined = law.definition(list(data), list(map(float, sizes)))
-    found = fit(defined, answers, ahead=False)
+    found = fit(law.definition(list(data), list(map(float, sizes))), answers, ahead=False)
     covered = [low <= true[key] <= high for key, (low, high) in found.intervals.items()]
-    wide = found.half_widths / (QUANTILE * least_errors(name, at, sizes))
-    off = np.abs(found.curve(found.values)[1] / found.curve(true)[1] - 1.0)
-    return float(np.mean(covered)), float(np.median(wide)), float(off.max()), float(found.correlations[0, -1])
+    least, curve = least_covariance(name, at, sizes), found.curve(true)[1]
+    widths = np.log([factor for _, factor in law.unknown.values()])
+    steps = [found.curve(law.values(at + STEP * each))[1] for each in np.eye(at.size)]
+    others = np.random.default_rng(SEED).multivariate_normal(0.0 * at, least, 400) @ (
+        np.log(steps / curve) / STEP
+    )
+    return {
+        "covered": float(np.mean(covered)),
+        "wide": float(np.median(found.half_widths / (QUANTILE * widths * np.sqrt(np.diag(least))))),
+        "curve-error": float(np.abs(found.curve(found.values)[1] / curve - 1.0).max()),
+        "curve-least": float(np.median(np.abs(others).max(1))),
+        "correlation": float(found.correlations[0, -1]),
+    }
 
 
 @cache
@@ -204,7 +215,8 @@ def features(at: np.ndarray) -> np.ndarray:
 
 def inverse(at: np.ndarray) -> np.ndarray:
     """Coefficients of the quadratics over the values at coordinates, by Bayesian linear regression (Rasmussen
-    & Williams, Gaussian Processes for Machine Learning (2006), Eq. 2.8) with the standard deviation SCATTER.
+    & Williams, Gaussian Processes for Machine Learning (2006), Eq. 2.8), of standard deviation SCATTER; the
+    prior, of `features`, determines them also where there are fewer points than coefficients.
     """
     known = features(at)
     return np.linalg.solve(known.T @ known + SCATTER**2 * np.eye(known.shape[1]), known.T)
@@ -240,15 +252,12 @@ def answer(name: str, test: Test, values: Variables, fine: bool) -> Answer:
     return Answer(found, np.zeros(found.size), float(strain), float(ratio))
 
 
-def least_errors(name: str, at: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """The bound: standard errors (p,) of the logarithms, by the fine grid at the true parameters."""
-    step, law = 1e-5, LAWS[name]
-    depths = [
-        made(name, "fine", at + step * each)[:, 2:] / sizes[:, None] for each in (0.0, *np.eye(at.size))
-    ]
-    widths = np.log([factor for _, factor in law.unknown.values()])
-    jacobian = (np.array(depths[1:]) - depths[0]).reshape(at.size, -1).T / (step * widths)
-    return np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+def least_covariance(name: str, at: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """The bound: covariance (p, p) of the coordinates, by the fine grid at the true parameters."""
+    places = at + STEP * np.vstack([0.0 * at, np.eye(at.size)])
+    depths = np.array([made(name, "fine", each)[:, 2:] / sizes[:, None] for each in places])
+    jacobian = (depths[1:] - depths[0]).reshape(at.size, -1) / STEP
+    return np.linalg.inv(jacobian @ jacobian.T)
 
 
 def solved(
@@ -279,35 +288,24 @@ def unloaded(context: Context) -> Iterator[dict[str, Any]]:
         defined = law.definition(list(exact + noise * draws.normal(size=exact.shape)), [noise])
         found = fit(defined, Solves(SAM, context.store), ahead=False).values["body.young"]
         read = oliver_pharr(defined.tests[0])[0]
-        yield {
-            "sweep": "unloading",
-            "law": name,
-            "fitted": abs(found / 210e9 - 1.0),
-            "read": abs(read / 210e9 - 1.0),
-        }
+        off = {"fitted": abs(found / 210e9 - 1.0), "read": abs(read / 210e9 - 1.0)}
+        yield {"sweep": "unloading", "law": name, **off}
 
 
 def further(context: Context) -> Iterator[dict[str, Any]]:
     """Rows of fits that are solved: what one test leaves of Swift's constants, and with the proposed one."""
     draws, law = np.random.default_rng(SEED), replace(LAWS["swift"], tests=LAWS["swift"].tests[:1])
-    values, data = law.values([0.0] * 3), np.empty((0, 21))
+    values, data, shape = law.values([0.0] * 3), np.empty((0, 21)), [1e-6 * np.append(0.1, SHARE)]
     for tests in ("one", "two"):
         context.progress(f"{context.case}: {tests}", 1, 2)
         last = replace(law, tests=law.tests[-1:])
-        shape = [1e-6 * np.append(0.1, SHARE)]
         exact = solved(last, "data", values, shape=shape, store=context.store)[:, 2:]
         data = np.concatenate([data, exact + 0.005 * exact[:, -1:] * draws.normal(size=exact.shape)])
         defined = law.definition(list(data), [0.005 * float(each) for each in data[:, -1]])
         found = fit(defined, Solves(SAM, context.store))
-        wide = {f"half-width-{key[-1]}": w for key, w in zip(values, found.half_widths, strict=True)}
-        off = np.abs(found.curve(found.values)[1] / found.curve(values)[1] - 1.0).max()
-        yield {
-            "sweep": "further",
-            "tests": tests,
-            "open": len(found.open_combinations),
-            "curve-error": off,
-            **wide,
-        }
+        named = {name.rpartition(".")[2] for _, names in found.open_combinations for name in names}
+        wide = {f"wide-{key[-1].lower()}": w for key, w in zip(values, found.half_widths, strict=True)}
+        yield {"sweep": "further", "tests": tests, "open": "".join(sorted(named)), **wide}
         if found.further:
             law = replace(law, tests=[*law.tests, (found.further[0].radius, found.further[0].force)])
 
@@ -318,25 +316,38 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         draws = np.random.default_rng(SEED)
         for draw in range(2):
             context.progress(f"{context.case}: {name}", draw, 2)
-            covered, wide, off, _ = one(name, 0.01, draws, context)
-            yield {
-                "sweep": "drawn",
-                "law": name,
-                "draw": draw,
-                "covered": covered,
-                "wide": wide,
-                "curve-error": off,
-            }
+            yield {"sweep": "drawn", "law": name, "draw": draw, **one(name, 0.01, draws, context)}
     yield from unloaded(context)
     yield from further(context)
+
+
+def curves(frame: Any) -> SmallTable:
+    """Errors of the curve at 1 % of noise, and the correlations."""
+    rows = [
+        [
+            row["law"],
+            *(f"{100 * row[key]:.2g} %" for key in ("curve-error", "curve-least")),
+            f"{0.02 * row['noise'] / row['curve-least'] * 100:.2g} %",
+            f"{row['correlation']:.2f}",
+        ]
+        for _, row in frame[frame["noise"] == 0.01].iterrows()
+    ]
+    heads = (
+        "law",
+        "error",
+        "least possible",
+        "noise with which that is 2 %",
+        "correlation of the first and the last",
+    )
+    return SmallTable("Yield curve up to the largest strain, noise 1 %", heads, rows)
 
 
 def moduli(frame: Any) -> SmallTable:
     """Errors of E."""
     own = frame[frame["sweep"] == "unloading"]
     rows = [
-        [law, f"{100 * fitted:.2g} %", f"{100 * read:.2g} %"]
-        for law, fitted, read in zip(own["law"], own["fitted"], own["read"], strict=True)
+        [row["law"], f"{100 * row['fitted']:.2g} %", f"{100 * row['read']:.2g} %"]
+        for _, row in own.iterrows()
     ]
     return SmallTable("Error of E from an unloading", ("body", "fit", "Oliver and Pharr"), rows)
 
@@ -349,14 +360,14 @@ def main() -> None:
     for name, law in LAWS.items():
         size = len(law.unknown)
         shape = [np.append(0.01, SHARE) * 0.02 * radius for radius, _ in law.tests]
-        for at in 2.0 * Sobol(size, seed=1).random(16)[list(law.points)] - 1.0:
-            for grid in GRIDS:
+        for at in sorted((2.0 * Sobol(size, seed=1).random(16)[list(law.points)] - 1.0).tolist()):
+            for grid in sorted(GRIDS):
                 for k, found in enumerate(solved(law, grid, law.values(at), shape=shape, store=store)):
                     rows.append([name, grid, k, *at, *[0.0] * (3 - size), *found])
     names = ["law", "model", "test", "at_0", "at_1", "at_2", "strain", "a_over_R", "dent"]
     frame = DataFrame(rows, columns=[*names, *(f"d{k}" for k in range(SHARE.size))])
-    path = Path(str(resources.files("verification"))) / "data" / KEPT
-    path.write_bytes(columns_text({name: frame[name].to_numpy() for name in frame}).encode())
+    with resources.as_file(resources.files("verification") / "data" / KEPT) as path:
+        frame.to_csv(path, index=False, float_format="%.6g")
 
 
 if __name__ == "__main__":
