@@ -22,7 +22,7 @@ def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tupl
     model = model_of(plan, plan.problem(Counters()))
     if extent is not None:
         return model, begun(model, [], extent(model))
-    peak = elastic_peak(model.elastic, plan.schedule.peak)
+    peak = elastic_peak(model, plan.schedule.peak)
     return model, begun(model, [], first_box(model, peak))
 
 

@@ -337,11 +337,6 @@ class KinematicMaterial(Material):
     back: BackStressFields
     hardens_back: ClassVar[bool] = True
 
-    @classmethod
-    def of(cls, mu: float, curve: YieldCurve, factor: Array, back: tuple[Array, Array]) -> Self:
-        """The material with the moduli and recoveries `back`, see `BackStressFields`."""
-        return cls(mu, curve, factor, BackStressFields(*back))
-
     def back_stress(self, fields: MaterialFields) -> Array:
         """The sum of the back-stresses in Pa, (6, ...)."""
         if fields.back is None:

@@ -8,7 +8,7 @@ it built last, which saves time and changes no result.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
 
@@ -23,7 +23,7 @@ from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import Cuboids, Lags
 from sam.plasticity.box import ExpectedBox
-from sam.plasticity.flow import KinematicMaterial, Material
+from sam.plasticity.flow import BackStressFields, KinematicMaterial, Material
 from sam.plasticity.load_step import (
     CONTACT_SHARE,
     ContactPressure,
@@ -58,20 +58,14 @@ class Built:
 
 
 @dataclass(frozen=True)
-class Model:
+class Model(ElasticProblem):
     """A body that yields on a grid, over its load history; built: the problem that was built last."""
 
-    elastic: ElasticProblem
     built: Built = field(default_factory=Built, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.plan.plasticity is None:
             raise ValueError("the plan has no plasticity")
-
-    @property
-    def plan(self) -> Plan:
-        """All that is known beforehand."""
-        return self.elastic.plan
 
     @cached_property
     def strength(self) -> Strength:
@@ -94,24 +88,9 @@ class Model:
         return (PAPER_SHARE if self.plan.paper else CONTACT_SHARE) * self.tolerance
 
     @property
-    def counters(self) -> Counters:
-        """Where the work is counted."""
-        return self.elastic.counters
-
-    def place(self, load: Load) -> str:
-        """Where a counter-body that moves is, in words; empty of one in place."""
-        return "" if self.plan.track is None else self.plan.track.place(load)
-
-    @property
     def unit(self) -> float:
         """Pa per p_hat, E*/2."""
         return self.plan.pair.contact_modulus / 2
-
-    def leaves_grid(self, window: Window, pressure: Array) -> bool:
-        """Whether a moving counter-body on a smooth body touches the edge; pressure: on a window."""
-        if self.plan.track is None or self.plan.places.anywhere:
-            return False
-        return self.plan.track.at_edge(self.grid, pressure, window)
 
     def coefficient(self, film: TribofilmState | None) -> Coefficient:
         """The coefficient of friction on the grid."""
@@ -119,10 +98,9 @@ class Model:
             return self.plan.slip.coefficient
         return self.plan.tribofilm.coefficient(film)
 
-    def gap(self, load: Load, wear: WearState | None) -> Array:
+    def worn_gap(self, load: Load, wear: WearState | None) -> Array:
         """Gap of the surfaces as they are worn, without displacement, (nx, ny) in m."""
-        unworn = self.elastic.gap(load)
-        return unworn if wear is None else unworn + wear.depth
+        return self.gap(load) if wear is None else self.gap(load) + wear.depth
 
     def faces(self, extent: Extent) -> Array:
         """Depths of the faces of the layers of a box, (n_layers + 1,) in m."""
@@ -144,8 +122,14 @@ class Model:
         if old is not None and same_box and same_film and same_wear:
             return old
         coefficient, surface = self.coefficient(film), last.surface
-        if self.plan.misfit is None and (surface is None or not same_film):
-            surface = self._with_friction(surface, coefficient)
+        factor = self.plan.slip.coupling
+        if self.plan.misfit is None and surface is None:
+            aspect, coupling = self.grid.hy / self.grid.hx, factor * coefficient
+            surface = SurfaceOperators(
+                self.grid.shape, aspect, self.counters, coupling=coupling, bodies=self.plan.bodies
+            )
+        elif surface is not None and factor and not same_film:  # the others share what is computed
+            surface = surface.with_coupling(factor * coefficient)
         if old is not None and same_box and same_wear and surface is last.surface:
             pressure = old.pressure
         else:
@@ -178,17 +162,7 @@ class Model:
         curve, factor, back = strength.curve_at(cells), strength.profile(cells), strength.back_at(cells[None])
         if back is None:
             return Material(mu, curve, factor)
-        return KinematicMaterial.of(mu, curve, factor, back)
-
-    def _with_friction(self, surface: SurfaceOperators | None, coefficient: Coefficient) -> SurfaceOperators:
-        """The surface coefficients of the grid with this friction; they share what is computed."""
-        grid, factor = self.grid, self.plan.slip.coupling
-        if surface is None:
-            aspect, coupling = grid.hy / grid.hx, factor * coefficient
-            return SurfaceOperators(
-                grid.shape, aspect, self.counters, coupling=coupling, bodies=self.plan.bodies
-            )
-        return surface.with_coupling(factor * coefficient) if factor else surface
+        return KinematicMaterial(mu, curve, factor, BackStressFields(*back))
 
     def cuboids(self, extent: Extent) -> Cuboids:
         """The cells of a box, in m."""
@@ -232,7 +206,7 @@ class Model:
             return False
         if self.plan.misfit is not None:  # about the axis, and nothing is opposite
             return True
-        gap = self.elastic.gap(UNLOADED)[window.slices]
+        gap = self.gap(UNLOADED)[window.slices]
         return np.array_equal(gap, gap.T)
 
     def _pressure(
@@ -246,25 +220,14 @@ class Model:
             return GivenPressure(lambda load: given.pressure(grid, load, window) / self.unit, window.shape)
         return ContactPressure(
             BoxContact(surface, window),
-            lambda load: self.gap(load, wear)[window.slices],
+            lambda load: self.worn_gap(load, wear)[window.slices],
             grid.hx,
             grid.hx * grid.hy * self.unit,
         )
 
-    @property
-    def surface(self) -> SurfaceOperators:
-        """The surface coefficients of the grid, with the friction of the problem that was built last."""
-        if self.built.surface is None:
-            raise ValueError("no problem was built yet")
-        return self.built.surface
-
-    def nothing_strained(self) -> Array:
-        """Total strains of the surface before the first load, (4, nx, ny)."""
-        return np.zeros((4, self.grid.nx, self.grid.ny))
-
     def surface_strain(self, extent: Extent, stress: Array, plastic: Array) -> Array:
         """Total strains of the surface of the grid, (4, nx, ny), of fields on a box; zero outside of it."""
-        body, out = self.plan.pair.body, self.nothing_strained()
+        body, out = self.plan.pair.body, np.zeros((4, *self.grid.shape))
         out[(..., *extent.window.slices)] = surface_strain(
             stress, plastic, self.grid.depths, young=body.young, poisson=body.poisson
         )
@@ -291,4 +254,4 @@ def model_of(plan: Plan, problem: ElasticProblem) -> Model:
     ValueError
         For the plan of an elastic body.
     """
-    return Model(replace(problem, plan=plan))
+    return Model(plan, problem.counters)

@@ -53,7 +53,7 @@ class Added:
 
 @dataclass(frozen=True)
 class Begun:
-    """The material at the beginning of a period, on a box; worn as of `Added`."""
+    """The material at the beginning of a cycle or period, on a box; worn as of `Added`."""
 
     extent: Extent
     material: CellFields
@@ -67,6 +67,10 @@ class Begun:
         strain = end.strain.mean(axis=1) - start.strain.mean(axis=1)
         accumulated = end.peeq.mean(axis=0) - start.peeq.mean(axis=0)
         return Added(extent, cells, accumulated, norm_of(strain), strain, self.worn)
+
+    def new_strain(self, state: State, extent: Extent) -> Array:
+        """Accumulated plastic strain of a later state of the same cycle that is new, on the box of that."""
+        return state.material.peeq - self.material.on_box(self.extent, extent).peeq
 
 
 @dataclass(frozen=True)
@@ -158,18 +162,6 @@ class Outside:
 
 
 @dataclass(frozen=True)
-class CycleStart:
-    """The material at the start of a cycle, on a box."""
-
-    extent: Extent
-    material: CellFields
-
-    def new_strain(self, state: State, extent: Extent) -> Array:
-        """Accumulated plastic strain of a later state of the same cycle that is new, on the box of that."""
-        return state.material.peeq - self.material.on_box(self.extent, extent).peeq
-
-
-@dataclass(frozen=True)
 class Progressed:
     """A history after a committed step, or part of one: state on a box, targets to come, work, what
     the surface remembers; last, change: the trial committed last; cuts: loads to the first target;
@@ -193,7 +185,7 @@ class Progressed:
     recalled: Mapping[str, Array] = field(default_factory=dict)
     outside: Outside | None = None
     longer: bool = False
-    cycle_start: CycleStart | None = None
+    cycle_start: Begun | None = None
     periods: Periods = field(default_factory=Periods)
     dissipated: float = 0.0
     left: tuple[float, float] = (0.0, 0.0)
@@ -209,8 +201,3 @@ class Progressed:
             return None
         ratio = load.rise(self.state.load) / (self.last.rise or float("inf"))
         return replace(self.change, ratio=ratio) if 0 < ratio <= 1 + ROUNDING else None
-
-    def recall(self, load: Load) -> Array | None:
-        """p_hat under the same load in the cycle before, if the box is the same."""
-        pressure = self.recalled.get(repr(load.level))
-        return pressure if pressure is not None and pressure.shape == self.extent.window.shape else None

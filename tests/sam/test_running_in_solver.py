@@ -128,7 +128,9 @@ def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(mo
         return source(trial.residual.displacement, trial.load, trial.pressure, 1e-8)
 
     with_failures = pressure(model.problem(extent, film, None).pressure)
-    new = pressure(model.problem(extent, model.plan.tribofilm.fresh(model.nothing_strained()), None).pressure)
+    new = pressure(
+        model.problem(extent, model.plan.tribofilm.fresh(np.zeros((4, *model.grid.shape))), None).pressure
+    )
     grid = model.grid
     bare = SurfaceOperators((grid.nx, grid.ny), grid.hy / grid.hx, Counters())
     alone = pressure(replace(model.built.problem.pressure, contact=BoxContact(bare, extent.window)))
