@@ -27,6 +27,7 @@ from sam.plasticity.progress import Progressed
 from sam.results.history import History, Row, cycles_table, history_table, loops_table, of_ends
 from sam.results.mesh import cycle_grids, field_mesh, state_grids
 from sam.results.quantities import EVEN, quantities, with_extrapolation
+from sam.results.rough import rough_discretisation, rough_quantities, rough_warnings, surface_table
 from sam.results.snapshots import Snapshot
 from sam.results.tables import advice, state_tables
 from sam.scene import Result, Scene, Status
@@ -194,7 +195,8 @@ def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
 
 def _warnings(plan: Plan, peak: Snapshot) -> tuple[str, ...]:
     """What a user should know about a rough or coated peak."""
-    out = plan.rough.warnings(plan.grid, peak.contact) if plan.rough is not None else ()
+    rough = plan.rough
+    out = () if rough is None else rough_warnings(rough, plan.remedies, plan.grid, peak.contact)
     comparison = peak.coated.comparison if peak.coated is not None else None
     return (*out, comparison.warning) if comparison is not None and comparison.warning else out
 
@@ -209,7 +211,7 @@ def _result(
         left_out += left_out_of_unyielding(plan)
     if status is Status.NOT_CONVERGED:
         ending = next((row.ending for row in history.rows if row.ending), "")
-    peak, heights = states[0], rough.heights if rough is not None else None
+    peak, heights = states[0], rough.of_body if rough is not None else None
     verdicts: Sequence[Verdict] = ()
     if judging is not None:  # a body that yields nowhere has them without any strain
         verdicts = (UNSTRAINED,) * (steps.cycles // judging.period)
@@ -222,7 +224,7 @@ def _result(
         kinks=EVEN if plan.plasticity is None or record is None else plan.plasticity.strength().kinks,
         centred=rough is None,
     )
-    values |= {} if rough is None else rough.quantities(grid, peak.contact)
+    values |= {} if rough is None else rough_quantities(grid, peak.contact)
     tables = _tables(plan, history, verdicts)
     if plan.track is not None:
         at_edge = status is Status.CONTACT_AT_GRID_EDGE
@@ -247,7 +249,7 @@ def _result(
             "largest_depth_m": float(grid.depths[-1]),
             "contact_box_cells": [peak.contact.box.nx, peak.contact.box.ny],
             "contact_cells": int(np.count_nonzero(peak.contact.pressure)),
-            **(rough.discretisation() if rough is not None else {}),
+            **(rough_discretisation(rough) if rough is not None else {}),
             "tangential_kernels": counters.tangential_kernels,
             **history.discretisation,
         },
@@ -273,7 +275,7 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
     tables: dict[str, Any] = {"history": history_table(history.rows)}
     tables |= state_tables(grid, states, plan.pair.share)
     if rough is not None:
-        tables["surface"] = rough.table(grid, states)
+        tables["surface"] = surface_table(rough, grid, states)
     tables["residuals"] = residual_table(
         [*((row.cycle, row.step, row.attempts) for row in history.rows), *history.unfinished]
     )

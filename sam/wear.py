@@ -275,34 +275,14 @@ class WearState:
     bottom_columns: tuple[int, ...] = ()
     residuals: tuple[float, ...] = ()
 
-    @classmethod
-    def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
-        """The surface before the first cycle; hx, hy: cell in m."""
-        return cls(hx * hy, np.zeros(shape))
-
     @property
     def volume(self) -> float:
         """Removed so far, in m3."""
         return sum(self.volumes)
 
-    @property
-    def of_last_cycle(self) -> tuple[float, float, float, float, float]:
-        """In m3: removed, raw, roofed, roof, filled."""
-        raw, roofed, roof = self.raw_volumes[-1], self.roofed_volumes[-1], self.roof_volumes[-1]
-        return self.volumes[-1], raw, roofed, roof, self.filled_volumes[-1]
-
-    @property
-    def raw_volume(self) -> float:
-        """Raw removal so far, in m3; what smoothing left counts again when it is removed again."""
-        return sum(self.raw_volumes)
-
     def volume_of(self, thickness: Array) -> float:
         """Volume in m3 of a layer of this thickness in m on the cells, (nx, ny)."""
         return float(self.cell_area * thickness.sum())
-
-    def imbalance(self, original: Array, current: Array) -> float:
-        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, undisplaced."""
-        return self.volume - self.volume_of(original - current)
 
 
 @dataclass(frozen=True)
@@ -324,7 +304,7 @@ class WearLaw:
 
     def fresh(self) -> WearState:
         """The surface before the first cycle."""
-        return WearState.empty(self.shape, self.hx, self.hy)
+        return WearState(self.hx * self.hy, np.zeros(self.shape))
 
     def margin(self, peeq: Array, faces: Array) -> float:
         """1 less the largest plastic strain of cells, (n_layers, nx, ny), over its limit; faces in m."""

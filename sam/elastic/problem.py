@@ -18,11 +18,10 @@ from sam.contact.stress import DEPTHS_AT_ONCE
 from sam.elastic.misfit import MisfitSphere
 from sam.grid.cells import CellGrid, Room, Sides, Window
 from sam.grid.gap import InitialGap, Shape
-from sam.grid.rough import RoughDemand
+from sam.grid.rough import RoughDemand, RoughPatch
 from sam.grid.smooth import GridDemand, MisfitDemand
 from sam.half_space import ElasticPair
 from sam.moving import Track
-from sam.results.rough import RoughRecord
 from sam.results.tables import Remedies
 from sam.scene import LeftOut, Plasticity, Solver, Stage
 from sam.scene.result import left_out_of
@@ -144,7 +143,7 @@ class Plan:
     misfit: MisfitSphere | None = None
     track: Track | None = None
     coated: CoatedPair | None = None
-    rough: RoughRecord | None = None
+    rough: RoughPatch | None = None
     plasticity: Plasticity | None = None
     tribofilm: FilmOnCells | None = None
     wear: WearLaw | None = None
@@ -234,7 +233,7 @@ class ElasticProblem:
         if plan.rough is None:
             return InitialGap(plan.shape, plan.grid)
         start = None if plan.track is None else plan.track.start
-        return InitialGap(plan.shape, plan.grid, plan.rough.heights, plan.rough.opposite, start)
+        return InitialGap(plan.shape, plan.grid, plan.rough.of_body, plan.rough.opposite, start)
 
     def bare(self) -> ElasticProblem:
         """The same with the material of the body up to its surface."""

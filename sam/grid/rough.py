@@ -5,6 +5,7 @@ grid may come into contact.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -80,6 +81,11 @@ class RoughPatch:
             return self.strip.at(number, place)
         stretch = stated(self.counter).stretch(number)
         return _heights(stretch, self.cells, self.extent, self.relief)
+
+    @property
+    def opposite(self) -> Callable[[int, tuple[float, float]], Array] | None:
+        """Heights of a stretch of the counter-body at a place, (nx, ny) in m; None if it is smooth."""
+        return None if self.counter is None else self.counter_heights
 
     def changed_by_taper(self, surface: Surface) -> tuple[float, float]:
         """Rms change of the heights of a surface by its taper, and their rms deviation, in m."""

@@ -18,7 +18,6 @@ from sam.half_space import ElasticPair
 from sam.moving import Growth, Track
 from sam.planner.bodies import Bodies, coarse, given_sides
 from sam.planner.stages import stages_of
-from sam.results.rough import RoughRecord
 from sam.results.tables import Remedies
 from sam.scene import CounterBody, LeftOut, Scene, remedies
 from sam.scene.section import stated
@@ -82,7 +81,7 @@ def plan_of(bodies: Bodies) -> Plan:
         misfit=bodies.misfit,
         track=track,
         coated=bodies.coated,
-        rough=None if rough is None else RoughRecord(rough, words),
+        rough=rough,
         plasticity=plasticity,
         tribofilm=film,
         wear=wear,

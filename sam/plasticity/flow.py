@@ -253,7 +253,10 @@ def kinematic_multiplier(
     """(dp, (n,), and eta in Pa, (6, n)) of (d) for n cells that yield, as `plastic_multiplier`; trial:
     deviatoric; start, back: back-stresses at the beginning and their constants.
     """
-    turns = _Turns.of(trial, start)
+    xi = trial - start.sum
+    weighted = (1.5 * SHEAR)[:, None] * xi
+    cross = np.einsum("sn,ksn->kn", weighted, start.each)
+    turns = _Turns(xi, start, np.einsum("sn,sn->n", weighted, xi), cross)
     low, high = np.zeros(trial.shape[1]), (turns.square**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
     gamma = np.clip(near, low, high)
     for _ in range(KINEMATIC_ITERATIONS):
@@ -309,14 +312,6 @@ class _Turns:
     start: BackStresses
     square: Array
     cross: Array
-
-    @classmethod
-    def of(cls, trial: Array, start: BackStresses) -> Self:
-        """Of some cells."""
-        xi = trial - start.sum
-        weighted = (1.5 * SHEAR)[:, None] * xi
-        cross = np.einsum("sn,ksn->kn", weighted, start.each)
-        return cls(xi, start, np.einsum("sn,sn->n", weighted, xi), cross)
 
     def mises(self, lost: Array, recovery: Array) -> tuple[Array, Array, Array]:
         """J(eta) after 1 - b_k, its slope over dp, and the size that its rounding goes with."""

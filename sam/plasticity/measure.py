@@ -321,8 +321,14 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
     end = replace(end, moved=moved, worn=wear.depth, margin=margin)
     if len(wear.volumes) != cycle:
         return end
-    worn, raw, roofed, roof, filled = wear.of_last_cycle
-    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
+    return replace(
+        end,
+        wear_of_cycle=wear.volumes[-1],
+        raw=wear.raw_volumes[-1],
+        roofed=wear.roofed_volumes[-1],
+        roof=wear.roof_volumes[-1],
+        filled=wear.filled_volumes[-1],
+    )
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:

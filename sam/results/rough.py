@@ -5,8 +5,8 @@ warnings.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -15,118 +15,101 @@ from numpy.typing import NDArray
 from sam.arrays import Array
 from sam.contact.normal import Contact, fewest_in_spot
 from sam.grid.cells import CellGrid, at_edge
-from sam.grid.gap import Place
 from sam.grid.rough import RoughPatch
 from sam.results.history import contact_area
 from sam.results.snapshots import Snapshot
 from sam.results.tables import Remedies
 from sam.scene.remedies import either
 from sam.scene.result import COUNTER_HEIGHT, SURFACE
-from sam.scene.surface import Roughness, border_cells, roughness_as_read
+from sam.scene.surface import border_cells, roughness_as_read
 
 LEAST_SHARE = 0.05  # of the load: a spot that carries as much has to be resolved
 WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
 
 
-@dataclass(frozen=True)
-class RoughRecord:
-    """Makes the record of rough surfaces on a patch; remedies: of their scene."""
+def rough_discretisation(patch: RoughPatch) -> dict[str, object]:
+    """Roughness before the first load; of a file also as it was read, before form and gaps."""
+    out: dict[str, object] = {"roughness": asdict(patch.roughness())}
+    for surface, suffix in ((patch.surface, ""), (patch.counter, "_of_counterbody")):
+        if surface is not None and surface.kind == "file":
+            out[f"roughness_as_read{suffix}"] = asdict(roughness_as_read(surface))
+    return out
 
-    patch: RoughPatch
-    remedies: Remedies
 
-    @property
-    def heights(self) -> Array:
-        """Heights of the body before the first load, (nx, ny) in m."""
-        return self.patch.of_body
-
-    @property
-    def opposite(self) -> Callable[[int, Place], Array] | None:
-        """Heights of a stretch of the counter-body at a place, (nx, ny) in m; None if it is smooth."""
-        return None if self.patch.counter is None else self.patch.counter_heights
-
-    def roughness(self, lowered: Array | float = 0.0) -> Roughness:
-        """Roughness of the surface lowered by wear and plastic strain, (nx, ny) in m."""
-        return self.patch.roughness(lowered)
-
-    def discretisation(self) -> dict[str, object]:
-        """Roughness before the first load; of a file also as it was read, before form and gaps."""
-        out: dict[str, object] = {"roughness": asdict(self.roughness())}
-        for surface, suffix in ((self.patch.surface, ""), (self.patch.counter, "_of_counterbody")):
-            if surface is not None and surface.kind == "file":
-                out[f"roughness_as_read{suffix}"] = asdict(roughness_as_read(surface))
-        return out
-
-    def table(self, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-        """The table surface: a row a cell for each state, y running first; counter-body heights last."""
-        x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-        parts = [
-            {
-                "state": np.full(x.size, each.state),
-                "x_m": x.ravel(),
-                "y_m": y.ravel(),
-                "height_m": self.heights.ravel(),
-                "p_Pa": each.contact.pressure.ravel(),
-                "worn_m": np.zeros(x.size) if each.worn is None else each.worn.ravel(),
-                "friction": each.local_friction.ravel(),
-            }
-            for each in snapshots
-        ]
-        table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
-        if self.opposite is not None:
-            table[COUNTER_HEIGHT] = np.concatenate(
-                [self.opposite(each.stretch, each.place).ravel() for each in snapshots]
-            )
-        return table | {"state": table["state"].tolist()}
-
-    def quantities(self, grid: CellGrid, contact: Contact) -> dict[str, float | None]:
-        """Contact spots, which join at the sides of cells and may be cut by the edge of the patch; the share
-        of the patch in contact; the mean of the gap over the patch.
-        """
-        mean = float(contact.gap.mean())
-        return {
-            "contact_spots": float(spots_of(contact.pressure, grid.wraps).max()),
-            "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
-            "mean_gap_m": mean if np.isfinite(mean) else None,
+def surface_table(patch: RoughPatch, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """The table surface: a row a cell for each state, y running first; counter-body heights last."""
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    parts = [
+        {
+            "state": np.full(x.size, each.state),
+            "x_m": x.ravel(),
+            "y_m": y.ravel(),
+            "height_m": patch.of_body.ravel(),
+            "p_Pa": each.contact.pressure.ravel(),
+            "worn_m": np.zeros(x.size) if each.worn is None else each.worn.ravel(),
+            "friction": each.local_friction.ravel(),
         }
+        for each in snapshots
+    ]
+    table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
+    if patch.opposite is not None:
+        table[COUNTER_HEIGHT] = np.concatenate(
+            [patch.opposite(each.stretch, each.place).ravel() for each in snapshots]
+        )
+    return table | {"state": table["state"].tolist()}
 
-    def warnings(self, grid: CellGrid, contact: Contact) -> tuple[str, ...]:
-        """What a user should know about the peak, in words."""
-        out, touching, finer = [], contact.pressure > 0, self.remedies.finer_cells
-        finer = f": {finer}" if finer else ""
-        for surface in (self.patch.surface, self.patch.counter):
-            if surface is None or surface.kind == "file":
-                continue
-            cells = [s / h for s, h in zip(surface.shortest, (grid.hx, grid.hy), strict=True)]
-            if min(cells) < WELL_RESOLVED * (1 - 1e-6):
-                out.append(
-                    f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
-                    f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
-                )
-        if coarse := too_few_cells(contact.pressure, grid.wraps):
-            out.append(f"{coarse}{finer}")
-        if self.patch.relief and (made := in_the_fall_off(contact.pressure)):
-            out.append("; ".join(filter(None, (made, self.remedies.larger_patch))))
-        for surface in (self.patch.surface, self.patch.counter):
-            if surface is not None and surface.taper is not None:
-                changed, sq = self.patch.changed_by_taper(surface)
-                out.append(
-                    f"{surface.table}.taper = {surface.taper:g}: so that they repeat, heights are changed by "
-                    f"{changed:.4g} m (rms), {100 * changed / sq:.3g} % of their rms deviation"
-                )
-        if not grid.periodic and at_edge(touching, grid.line):
-            words, (bx, by) = (
-                "the contact touches the edge of the grid, where the half-space is cut",
-                grid.border,
+
+def rough_quantities(grid: CellGrid, contact: Contact) -> dict[str, float | None]:
+    """Contact spots, which join at the sides of cells and may be cut by the edge of the patch; the share
+    of the patch in contact; the mean of the gap over the patch.
+    """
+    mean = float(contact.gap.mean())
+    return {
+        "contact_spots": float(spots_of(contact.pressure, grid.wraps).max()),
+        "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
+        "mean_gap_m": mean if np.isfinite(mean) else None,
+    }
+
+
+def rough_warnings(
+    patch: RoughPatch, remedies: Remedies, grid: CellGrid, contact: Contact
+) -> tuple[str, ...]:
+    """What a user should know about the peak, in words."""
+    out, touching, finer = [], contact.pressure > 0, remedies.finer_cells
+    finer = f": {finer}" if finer else ""
+    for surface in (patch.surface, patch.counter):
+        if surface is None or surface.kind == "file":
+            continue
+        cells = [s / h for s, h in zip(surface.shortest, (grid.hx, grid.hy), strict=True)]
+        if min(cells) < WELL_RESOLVED * (1 - 1e-6):
+            out.append(
+                f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
+                f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
             )
-            if any(grid.border):
-                words += f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
-                words += 'grid.border = "relief" lets the heights fall off'
-            else:  # the heights fall off already, and all cells count
-                can = either(self.remedies.larger_patch, self.remedies.less_load)
-                words += f' although the heights fall off there (grid.border = "relief"): {can}'
-            out.append(words)
-        return tuple(out)
+    if coarse := too_few_cells(contact.pressure, grid.wraps):
+        out.append(f"{coarse}{finer}")
+    if patch.relief and (made := in_the_fall_off(contact.pressure)):
+        out.append("; ".join(filter(None, (made, remedies.larger_patch))))
+    for surface in (patch.surface, patch.counter):
+        if surface is not None and surface.taper is not None:
+            changed, sq = patch.changed_by_taper(surface)
+            out.append(
+                f"{surface.table}.taper = {surface.taper:g}: so that they repeat, heights are changed by "
+                f"{changed:.4g} m (rms), {100 * changed / sq:.3g} % of their rms deviation"
+            )
+    if not grid.periodic and at_edge(touching, grid.line):
+        words, (bx, by) = (
+            "the contact touches the edge of the grid, where the half-space is cut",
+            grid.border,
+        )
+        if any(grid.border):
+            words += f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
+            words += 'grid.border = "relief" lets the heights fall off'
+        else:  # the heights fall off already, and all cells count
+            can = either(remedies.larger_patch, remedies.less_load)
+            words += f' although the heights fall off there (grid.border = "relief"): {can}'
+        out.append(words)
+    return tuple(out)
 
 
 def spots_of(pressure: Array, wraps: tuple[bool, bool]) -> NDArray[np.intp]:
