@@ -14,22 +14,26 @@ import numpy as np
 
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, fit_of
-from sam.elastic.history import solve_elastic
-from sam.elastic.problem import ElasticProblem, Plan
-from sam.elastic.stress import elastic_peak, yields
+from sam.elastic.problem import ElasticProblem, Plan, elastic_peak, solve_elastic, yields
 from sam.grid.cells import Room, Sides, enlarged, enlargement, how_to_enlarge
 from sam.moving import path_quantities, path_tables
 from sam.planner.bodies import Bodies
-from sam.planner.make import check_bodies, plan_of
-from sam.planner.stages import left_out_of_unyielding
+from sam.planner.make import check_bodies, left_out_of_unyielding, plan_of
 from sam.plasticity.history import on_larger_grid, solve_plastic
-from sam.plasticity.progress import Progressed
-from sam.results.history import History, Row, cycles_table, history_table, loops_table, of_ends
-from sam.results.mesh import cycle_grids, field_mesh, state_grids
+from sam.plasticity.model import Progressed
+from sam.results.history import History, Row, Snapshot, cycles_table, history_table, loops_table, of_ends
 from sam.results.quantities import EVEN, quantities, with_extrapolation
-from sam.results.rough import rough_discretisation, rough_quantities, rough_warnings, surface_table
-from sam.results.snapshots import Snapshot
-from sam.results.tables import advice, state_tables
+from sam.results.tables import (
+    advice,
+    cycle_grids,
+    field_mesh,
+    rough_discretisation,
+    rough_quantities,
+    rough_warnings,
+    state_grids,
+    state_tables,
+    surface_table,
+)
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (

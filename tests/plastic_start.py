@@ -8,7 +8,7 @@ from collections.abc import Callable
 import sam
 import sam.plasticity.history as solution
 from sam.contact.convolution import Counters
-from sam.elastic.stress import elastic_peak
+from sam.elastic.problem import elastic_peak
 from sam.grid.cells import Window
 from sam.plasticity import Extent, Model, Progressed
 from sam.plasticity.history import begun, first_box

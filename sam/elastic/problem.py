@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The plan of a solve, the elastic bodies on its grid, their contact under a load and the state it makes."""
+"""The plan of a solve, the elastic bodies on its grid, their contact under a load and the state it makes.
+
+Stresses of an elastic state at the output depths (paper Eq. 7, first sum), how friction moves its surface,
+and the onset of yield: whether the stress of the largest load yields anywhere.
+
+The load history of a body that stays elastic.
+"""
 
 from __future__ import annotations
 
@@ -11,23 +17,44 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters
-from sam.contact.normal import Contact, Search, around, no_contact, solve_contact
-from sam.contact.operators import HALF_SPACES, LINE, CoatedPair, HalfSpaces, SurfaceOperators
-from sam.contact.periodic import PeriodicHalfSpaces
-from sam.contact.stress import DEPTHS_AT_ONCE
+from sam.contact.normal import Contact, Search, around, fit_of, no_contact, solve_contact
+from sam.contact.operators import (
+    HALF_SPACES,
+    LINE,
+    CoatedPair,
+    HalfSpaces,
+    PeriodicHalfSpaces,
+    SurfaceOperators,
+    moved_rows,
+)
+from sam.contact.stress import DEPTHS_AT_ONCE, elastic_strain, stresses, von_mises, yielding
 from sam.elastic.misfit import MisfitSphere
 from sam.grid.cells import CellGrid, Room, Sides, Window
 from sam.grid.gap import InitialGap, Shape
 from sam.grid.rough import RoughDemand, RoughPatch
 from sam.grid.smooth import GridDemand, MisfitDemand
 from sam.half_space import ElasticPair
+from sam.kernels.patches import Lags
 from sam.moving import Track
-from sam.results.tables import Remedies
-from sam.scene import LeftOut, Plasticity, Solver, Stage
-from sam.scene.result import left_out_of
+from sam.results.history import (
+    Coated,
+    Comparison,
+    Cut,
+    History,
+    Row,
+    Sliding,
+    Snapshot,
+    counted,
+    largest_pressure,
+    row_of,
+    row_of_largest,
+)
+from sam.results.tables import Remedies, advice
+from sam.scene import LeftOut, Plasticity, Solver, Stage, Status
+from sam.scene.result import Attempt, Progress, left_out_of
 from sam.scene.verdict import Judging
-from sam.schedule import Coefficient, FullSlip, Load, Schedule
-from sam.tribofilm.state import FilmOnCells
+from sam.schedule import UNLOADED, Coefficient, FullSlip, Load, Schedule
+from sam.tribofilm.state import FilmOnCells, TribofilmState
 from sam.wear import WearLaw
 
 BYTES_AT_ONCE = 2e8  # of the spectra of a block of depths, which bounds the memory
@@ -292,3 +319,254 @@ class Loaded:
         if not self.problem.plan.slip.slides:
             return None
         return self.load.sign * self.coefficient * self.contact.pressure
+
+
+def stress_at(state: Loaded, depths: Array, window: Window) -> Array:
+    """Stress in a window of cells at some depths, (6, nz, nx, ny) in Pa."""
+    problem, tractions = state.problem, {3: state.contact.pressure}
+    if (traction := state.traction) is not None:
+        tractions[1] = traction
+    plan = problem.plan
+    cell, nu = (plan.grid.hx, plan.grid.hy), plan.pair.body.poisson
+    if plan.period is not None:
+        return plan.period.stresses(tractions, cell, depths, window, nu=nu, counters=problem.counters)
+    stress = stresses(
+        tractions,
+        (*cell, plan.grid.period),
+        depths,
+        window,
+        nu=nu,
+        layered=None if plan.coated is None else plan.coated.layered,
+        counters=problem.counters,
+    )
+    if plan.misfit is None or not state.load.misfit:
+        return stress
+    (i, j), grid = window.slices, plan.grid
+    at = grid.x[i, None], grid.y[j], np.asarray(depths)[:, None, None]
+    return stress + state.load.misfit * plan.misfit.stress(*at)
+
+
+def plane_stress(state: Loaded) -> Array:
+    """Stress in the rows of cells that touch y = 0, (6, nz, nx, rows) in Pa."""
+    grid = state.problem.plan.grid
+    return stress_at(state, grid.depths, grid.axis_rows)
+
+
+@dataclass(frozen=True)
+class Stresses:
+    """In Pa: in the rows at y = 0, (6, nz, nx, rows); von Mises, (nz, n); in another row, (6, nz, nx)."""
+
+    plane: Array
+    mises: Array
+    in_row: Array | None = None
+
+
+def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
+    """Stresses of a state, with the largest von Mises stress in the plane through the contact; on
+    the whole grid, which takes eight to twenty times as long, under a rough body.
+    """
+    problem = state.problem
+    if problem.plan.places.anywhere:
+        return _stresses_anywhere(state, counted(state.contact, problem.plan.grid), row)
+    plane, rows = plane_stress(state), problem.plan.grid.axis_rows
+    if row is None:
+        return Stresses(plane, _in_cells(plane))
+    if rows.j0 <= row < rows.j0 + rows.ny:
+        in_row = plane[..., row - rows.j0]
+    else:
+        in_row = stress_at(state, problem.plan.grid.depths, Window(0, row, problem.plan.grid.nx, 1))[..., 0]
+    return Stresses(plane, _in_cells(in_row[..., None] if problem.plan.places.beside else plane), in_row)
+
+
+def _in_cells(rows: Array) -> Array:
+    """Von Mises stress of rows of cells, (nz, nx rows) in Pa, of their stress, (6, nz, nx, rows)."""
+    return von_mises(rows).reshape(rows.shape[1], -1)
+
+
+def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stresses:
+    """The largest von Mises stress in a window of the grid, in blocks of depths, which bounds the memory."""
+    grid = state.problem.plan.grid
+    block, rows = depths_at_once(grid), grid.axis_rows.slices[1]
+    largest, plane, cut = [], [], []
+    for k in range(0, len(grid.depths), block):
+        stress = stress_at(state, grid.depths[k : k + block], grid.whole)
+        largest.append(von_mises(stress[(..., *window.slices)]).max(axis=(-2, -1)))
+        plane.append(stress[..., rows].copy())
+        if row is not None:
+            cut.append(stress[..., row].copy())
+    in_row = np.concatenate(cut, axis=1) if cut else None
+    return Stresses(np.concatenate(plane, axis=1), np.concatenate(largest)[:, None], in_row)
+
+
+def sliding_of(state: Loaded) -> Sliding | None:
+    """What friction adds to an elastic state; None without friction, then nothing is computed."""
+    problem, pressure, traction = state.problem, state.contact.pressure, state.traction
+    if traction is None:
+        return None
+    grid, counters, coated = problem.plan.grid, problem.counters, problem.plan.coated
+    zero = np.zeros(grid.axis_rows.shape)
+    if not traction.any():
+        return Sliding(traction, zero, zero, zero, zero)
+    if coated is not None:  # u_z: the contact's less that of the counter-body, see `CoatedPair`
+
+        def layered(nx: int, ny: int, *, component: int, load: int) -> Array:
+            lags = Lags(nx, ny, grid.hx, grid.hy)
+            return coated.layered.displacement(lags, component=component, load=load)
+
+        ux = moved_rows(grid, pressure, layered, (1, 3), counters=counters)
+        ux = ux + moved_rows(grid, traction, layered, (1, 1), counters=counters)
+        return Sliding(traction, ux, zero, zero, zero)
+    pair = problem.plan.pair
+    bodies = problem.plan.bodies
+    kernel = bodies.kernel(grid, pair.body.poisson)
+    ux = grid.hx * moved_rows(grid, pressure, kernel, (1, 3), counters=counters) / pair.body.shear
+    ux = ux + grid.hx * moved_rows(grid, traction, kernel, (1, 1), counters=counters) / pair.body.shear
+    # nu = 0 leaves out the factor 1 - 2 nu of D_31, which is a difference where the contact has it
+    extra = 0.0
+    if problem.plan.slip.coupled and pair.other is not None:
+        share = pair.body.compliance  # times E*: of the body in the displacement of both
+        extra = pair.body.tangential_compliance - 2 * share * pair.tangential_mismatch
+    uz = zero
+    if extra:
+        kernel = bodies.kernel(grid, 0.0)
+        uz = extra * (grid.hx * moved_rows(grid, traction, kernel, (3, 1), counters=counters))
+    return Sliding(traction, ux, zero, uz, zero)
+
+
+@dataclass(frozen=True)
+class ElasticPeak:
+    """The contact at the largest load of an elastic body, and von Mises stress (nz, n) in Pa: in y
+    = 0, of a rough one the largest; of a tribofilm with its high coefficient.
+    """
+
+    contact: Contact
+    mises: Array
+
+
+def elastic_peak(problem: ElasticProblem, load: Load) -> ElasticPeak | None:
+    """The elastic state under the largest load; None without any."""
+    if load.rests:
+        return None
+    high = problem.plan.slip.highest
+    state = problem.state(load, problem.contact(load, high), high)
+    if problem.plan.places.anywhere:
+        return ElasticPeak(state.contact, stresses_of(state).mises)
+    return ElasticPeak(state.contact, von_mises(plane_stress(state)).max(axis=-1))
+
+
+def yields(peak: ElasticPeak | None, limit: Array) -> bool:
+    """Whether the elastic stress at the peak exceeds the yield stress (nz,) in Pa anywhere. Paper Eq. 8."""
+    return peak is not None and bool(yielding(peak.mises, limit[:, None]).any())
+
+
+UNFIT = "bare body, for comparison: {}: its largest pressure and stress and their changes are not given"
+UNLOADING = "elastic: unloading in one step"
+CYCLE = "elastic: equal to cycle 1"
+
+
+def solve_elastic(problem: ElasticProblem, report: Progress) -> History:
+    """The load history of an elastic body: one cycle stands for all but on a renewed surface."""
+    plan, grid = problem.plan, problem.plan.grid
+    rows: list[Row] = []
+    snapshots: dict[str, Snapshot] = {}
+    schedule, tribofilm, track = plan.schedule, plan.tribofilm, plan.track
+    steps, previous, before = sum(target.rises for target in schedule.different), None, UNLOADED
+    film = None
+    for k, target in enumerate(schedule.different, start=1):
+        if tribofilm is not None and target.step == 1 and (track is None or film is None):
+            film = tribofilm.fresh(np.zeros((4, grid.nx, grid.ny)))
+        if track is not None and previous is not None:
+            previous = track.carried(grid, previous, before, target.load)
+        if tribofilm is not None and film is not None and track is not None:
+            film = tribofilm.entered(film, track.clock(target.cycle, target.load))
+        if tribofilm is None or film is None:
+            state = problem.state(target.load, problem.contact(target.load, start=previous))
+        else:
+            state, film = step_with_tribofilm(problem, tribofilm, film, target.load, start=previous)
+        contact, note = state.contact, target.note if target.rises else UNLOADING
+        attempts = (Attempt(True, contact.residuals, contact_tolerance(plan.solver.tolerance)),)
+        once = replace(target, cycle=1) if schedule.all_alike else target
+        row = row_of(grid, once, contact, coefficient=state.coefficient, whole=plan.slip.whole)
+        row = replace(row, iterations=contact.iterations, residual=contact.residual, note=note)
+        moved = None
+        if track is not None:
+            mu = target.load.sign * state.coefficient
+            moved = track.moved(grid, target.load, contact.pressure, window=grid.whole, traction=mu)
+        row = replace(row, attempts=attempts, moved=moved)
+        rows.append(row)
+        previous, before = contact.pressure, target.load
+        if target.rises:
+            report("contact", k, steps)
+        if target.snapshot:
+            place = target.load.x, target.load.y
+            snapshots[target.snapshot] = replace(
+                snapshot_of(target.snapshot, state), stretch=target.load.stretch, place=place
+            )
+            report("stress", 1, 1)
+    first = list(rows)
+    for cycle in range(2, schedule.cycles + 1 if schedule.all_alike else 2):
+        rows += [replace(row, cycle=cycle, iterations=0, note=CYCLE, attempts=()) for row in first]
+    return History(tuple(rows), snapshots)
+
+
+def step_with_tribofilm(
+    problem: ElasticProblem,
+    tribofilm: FilmOnCells,
+    film: TribofilmState,
+    load: Load,
+    *,
+    start: Array | None = None,
+) -> tuple[Loaded, TribofilmState]:
+    """State and tribofilm after a step, repeated until the film is the one whose friction it had."""
+    tried, grid, body = film, problem.plan.grid, problem.plan.pair.body
+    while True:
+        mu = tribofilm.coefficient(tried)
+        state = problem.state(load, problem.contact(load, mu, start), mu)
+        stress = stress_at(state, np.zeros(1), grid.whole)[:, 0]
+        strain = elastic_strain(stress, body.young, body.poisson)
+        pressure = state.contact.pressure
+        tested = tribofilm.tested(film, tried, strain, pressure=pressure, sign=load.sign)
+        if tested.film.failed is tried.film.failed:
+            return replace(state, coefficient=tribofilm.coefficient(tested)), tested
+        start, tried = pressure, tested
+
+
+def snapshot_of(name: str, state: Loaded) -> Snapshot:
+    """The record of a state."""
+    problem, plan, contact = state.problem, state.problem.plan, state.contact
+    row = row_of_largest(contact, counted(contact, plan.grid)) if plan.places.off_origin else None
+    stresses = stresses_of(state, row)
+    cut = None
+    if row is not None and stresses.in_row is not None:
+        peeq = np.zeros(stresses.in_row.shape[1:])
+        cut = Cut(float(plan.grid.y[row]), plan.grid.x, plan.grid.depths, stresses.in_row, peeq)
+    coated = None
+    if plan.coated is not None:  # with the bare body to compare with, under force
+        comparison = bare_body(state) if state.load.force else None
+        traction = state.traction if plan.slip.coupled else None
+        moved = plan.coated.counter_uz(plan.grid, contact.pressure, traction, problem.counters)
+        coated = Coated(plan.coated.thickness, moved, comparison)
+    zero, unmoved = np.zeros_like(stresses.plane), np.zeros(contact.gap.shape)
+    return Snapshot(
+        name,
+        contact,
+        unmoved,
+        stresses.plane,
+        zero,
+        zero[0],
+        stresses.mises,
+        sliding=sliding_of(state),
+        coated=coated,
+        cut=cut,
+    )
+
+
+def bare_body(state: Loaded) -> Comparison:
+    """Contact of the bare body, from the coated pressure on, and its stress; a warning where it is unfit."""
+    bare, load = state.problem.bare(), state.load.by_force()
+    contact = bare.contact(load, start=state.contact.pressure)
+    status = fit_of(contact, rough=bare.plan.places.anywhere)
+    if status is not Status.CONVERGED:
+        return Comparison(warning=UNFIT.format(advice(bare.plan.remedies, status)))
+    mises = stresses_of(bare.state(load, contact)).mises
+    return Comparison(largest_pressure(contact, bare.plan.grid), mises)

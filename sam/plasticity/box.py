@@ -16,7 +16,7 @@ from sam.arrays import Array, Mask
 from sam.contact.convolution import half_length
 from sam.contact.normal import around, margin_around
 from sam.contact.stress import yielding
-from sam.elastic.stress import ElasticPeak
+from sam.elastic.problem import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.plasticity.points import OFFSET
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE

@@ -16,9 +16,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.contact.stress import von_mises
-from sam.elastic.history import UNLOADING
-from sam.elastic.problem import ElasticProblem
-from sam.elastic.stress import ElasticPeak
+from sam.elastic.problem import UNLOADING, ElasticPeak, ElasticProblem
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.box import edge_reached, first_extent, grown, holding
 from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS, Problem
@@ -34,8 +32,7 @@ from sam.plasticity.measure import (
     with_loops,
     with_outside,
 )
-from sam.plasticity.model import Model
-from sam.plasticity.progress import Begun, Parts, Progressed, floor
+from sam.plasticity.model import Begun, Model, Parts, Progressed, floor
 from sam.plasticity.state import (
     CellFields,
     Change,

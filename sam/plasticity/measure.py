@@ -22,19 +22,17 @@ from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
 from sam.contact.stress import von_mises
-from sam.elastic.stress import plane_stress, sliding_of
+from sam.elastic.problem import plane_stress, sliding_of
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
 from sam.plasticity.box import ExpectedBox
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
-from sam.plasticity.model import Model
-from sam.plasticity.progress import Outside, Progressed
+from sam.plasticity.model import Model, Outside, Progressed
 from sam.plasticity.spectra import spectra_of
 from sam.plasticity.state import Extent, Trial, filled, surrounded
-from sam.results.history import CycleEnd, LoopRow, counted
-from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
+from sam.results.history import Box, Cut, CycleEnd, LoopRow, Snapshot, counted, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
 from sam.scene.section import stated
 from sam.scene.verdict import last_period, loop_places

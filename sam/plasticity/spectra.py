@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
-from sam.contact.periodic import PeriodicHalfSpaces
+from sam.contact.operators import PeriodicHalfSpaces
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
 from sam.kernels.layer_stress import LayerStress, functions_of
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags
@@ -38,8 +38,7 @@ from sam.plasticity.cell_means import (
     gauss_depths,
     mean_stress_of_load,
 )
-from sam.plasticity.images import Images, PeriodImages
-from sam.plasticity.swept import GAUSS, SweptLayers
+from sam.plasticity.swept import GAUSS, Images, PeriodImages, SweptLayers
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""

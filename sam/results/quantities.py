@@ -19,8 +19,7 @@ import numpy as np
 from sam.arrays import Array, Mask
 from sam.grid.cells import CellGrid
 from sam.half_space import equivalent_radius
-from sam.results.history import contact_area, largest_pressure
-from sam.results.snapshots import Box, Coated, Snapshot
+from sam.results.history import Box, Coated, Snapshot, contact_area, largest_pressure
 from sam.scene import LeftOut, Result, Status
 from sam.scene.result import EXCEEDING, QUANTITIES, STRAINED
 from sam.scene.yield_curve import Kinks

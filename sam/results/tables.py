@@ -1,20 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""The tables axis, line, plane and cut of the states, and what to change when a solve ends badly."""
+"""The tables axis, line, plane and cut of the states, and what to change when a solve ends badly.
+
+Fields of the states on the surface, in the plane y = 0 and in the box of plastic cells, on their grids;
+those of the first state on the surface and in the plane also as one mesh.
+
+What the record of a rough scene has besides that of a smooth one: its surface table, roughness and
+warnings.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from sam.arrays import Array
+from sam.contact.normal import Contact, fewest_in_spot
 from sam.contact.stress import von_mises
-from sam.grid.cells import CellGrid
-from sam.results.snapshots import Cut, Snapshot
-from sam.scene import Status
+from sam.grid.cells import CellGrid, at_edge
+from sam.grid.rough import RoughPatch
+from sam.results.history import Cut, CycleEnd, Snapshot, contact_area
+from sam.scene import FieldMesh, GridFields, Status
 from sam.scene.remedies import either
-from sam.scene.result import CUT, LINE, STRESSES
+from sam.scene.result import COUNTER_HEIGHT, CUT, LINE, STRESSES, SURFACE
+from sam.scene.surface import border_cells, roughness_as_read
 
 
 @dataclass(frozen=True)
@@ -128,3 +140,264 @@ def _cut_table(state: str, cut: Cut) -> Table:
         **{name: component.T.ravel() for name, component in zip(STRESSES, cut.stress, strict=True)},
     }
     return {name: columns[name] for name in CUT}
+
+
+def field_mesh(grid: CellGrid, snapshot: Snapshot, height: Array | None = None) -> FieldMesh:
+    """The mesh of a state: stress and strain in the plane, pressure in the cells of the surface."""
+    xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
+    surface = np.stack([*np.meshgrid(xs, ys, indexing="ij"), np.zeros((len(xs), len(ys)))], axis=-1).reshape(
+        -1, 3
+    )
+    x, z = np.meshgrid(grid.x, grid.depths, indexing="ij")
+    plane = np.stack([x, 0 * x, z], axis=-1).reshape(-1, 3)
+
+    def quads(n: int, m: int, first: int) -> NDArray[np.int_]:
+        """Node numbers of n - 1 x m - 1 quadrilaterals."""
+        node = first + np.arange(n * m).reshape(n, m)
+        return np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1).reshape(-1, 4)
+
+    def on_plane(field: Array) -> Array:
+        """(..., nz, nx, rows) as (nodes, ...), not a number on the surface."""
+        values = np.moveaxis(field.mean(axis=-1).swapaxes(-1, -2), (-2, -1), (0, 1))
+        values = values.reshape(-1, *values.shape[2:])
+        return np.concatenate([np.full((len(surface), *values.shape[1:]), np.nan), values])
+
+    def on_surface(field: Array) -> Array:
+        """(nx, ny) as (cells,), not a number in the plane."""
+        return np.append(field.ravel(), np.full(len(cells) - field.size, np.nan))
+
+    cells = np.vstack([quads(len(xs), len(ys), 0), quads(*x.shape, len(surface))])
+    on_cells = {"p_Pa": snapshot.contact.pressure}
+    if snapshot.sliding is not None:
+        on_cells |= {"qx_Pa": snapshot.sliding.traction, "friction": snapshot.local_friction}
+    if height is not None:
+        on_cells["height_m"] = height
+    if snapshot.worn is not None:
+        on_cells["worn_m"] = snapshot.worn
+    return FieldMesh(
+        points=np.vstack([surface, plane]),
+        cells={"quad": cells},
+        point_data={
+            "stress_Pa": on_plane(snapshot.stress),
+            "mises_Pa": on_plane(von_mises(snapshot.in_plane)[..., None]),
+            "plastic_strain": on_plane(snapshot.strain),
+            "peeq": on_plane(snapshot.peeq),
+            **{name: on_plane(field) for name, field in snapshot.repeated.items()},
+        },
+        cell_data={name: on_surface(field) for name, field in on_cells.items()},
+    )
+
+
+def state_grids(
+    grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None = None
+) -> dict[str, GridFields]:
+    """The fields of a state: on the "surface", in the "plane" and, of one that yields, in the "body"."""
+    strained = {"plastic_strain": snapshot.strain, "peeq": snapshot.peeq} if snapshot.box else {}
+    means = {"stress_Pa": snapshot.stress, **strained, **snapshot.repeated}
+    in_plane = {name: field.mean(axis=-1) for name, field in means.items()}
+    in_plane["mises_Pa"] = von_mises(snapshot.in_plane)
+    points = {name: field.swapaxes(-1, -2)[..., None, :] for name, field in in_plane.items()}
+    parts = {
+        "surface": _surface(grid, snapshot, share, height),
+        "plane": GridFields(grid.x, np.zeros(1), grid.depths, points),
+    }
+    if (box := snapshot.box) is not None:
+        fields = {
+            "stress_Pa": box.stress,
+            "mises_Pa": von_mises(box.stress),
+            "plastic_strain": box.strain,
+            "peeq": box.peeq,
+            **box.repeated,
+        }
+        cells = {name: np.moveaxis(field, -3, -1) for name, field in fields.items()}
+        parts["body"] = GridFields(box.x, box.y, box.z, cell_data=cells)
+    return parts
+
+
+def cycle_grids(
+    grid: CellGrid, ends: Sequence[CycleEnd], height: Array | None = None
+) -> dict[str, dict[str, GridFields]]:
+    """The unloaded surface after each cycle that can wear it, as "cycle-1" and so on."""
+    return {
+        f"cycle-{end.cycle}": {
+            "surface": _on_cells(grid, {"uz_m": end.moved, "worn_m": end.worn, "height_m": height})
+        }
+        for end in ends
+        if end.moved is not None
+    }
+
+
+def _surface(grid: CellGrid, snapshot: Snapshot, share: float, height: Array | None) -> GridFields:
+    """The cells of the surface; friction is zero out of contact, a gap that is not everywhere is left out."""
+    contact, sliding, coated = snapshot.contact, snapshot.sliding, snapshot.coated
+    cells: dict[str, Array | None] = {"p_Pa": contact.pressure, "height_m": height, "worn_m": snapshot.worn}
+    if np.isfinite(contact.gap).all():
+        cells["gap_m"] = contact.gap
+    if sliding is not None:
+        cells |= {"qx_Pa": sliding.traction, "friction": np.nan_to_num(snapshot.local_friction)}
+    beyond = [sliding.uz] if sliding is not None else []
+    beyond += [coated.counter_uz] if coated is not None else []
+    if not any(moved.any() for moved in beyond):  # those are known along y = 0 alone
+        whole = 1.0 if coated is not None else share
+        cells["uz_m"] = whole * contact.displacement + snapshot.residual_displacement
+    return _on_cells(grid, cells)
+
+
+def _on_cells(grid: CellGrid, cells: Mapping[str, Array | None]) -> GridFields:
+    """Fields (nx, ny) of the surface but for None; displacements at nodes as means of the cells."""
+    points, moved = {}, cells.get("uz_m")
+    if moved is not None:
+        around = np.pad(moved, 1, mode="edge")
+        uz = (around[1:, 1:] + around[1:, :-1] + around[:-1, 1:] + around[:-1, :-1]) / 4
+        points["normal_displacement_m"] = np.stack([0 * uz, 0 * uz, uz])[..., None]
+    xs, ys = (np.append(c - h / 2, c[-1] + h / 2) for c, h in ((grid.x, grid.hx), (grid.y, grid.hy)))
+    known = {name: field[..., None] for name, field in cells.items() if field is not None}
+    return GridFields(xs, ys, np.zeros(1), points, known)
+
+
+LEAST_SHARE = 0.05  # of the load: a spot that carries as much has to be resolved
+WELL_RESOLVED = 4.0  # cells in the shortest wavelength; below it maxima depend on where the cells lie
+
+
+def rough_discretisation(patch: RoughPatch) -> dict[str, object]:
+    """Roughness before the first load; of a file also as it was read, before form and gaps."""
+    out: dict[str, object] = {"roughness": asdict(patch.roughness())}
+    for surface, suffix in ((patch.surface, ""), (patch.counter, "_of_counterbody")):
+        if surface is not None and surface.kind == "file":
+            out[f"roughness_as_read{suffix}"] = asdict(roughness_as_read(surface))
+    return out
+
+
+def surface_table(patch: RoughPatch, grid: CellGrid, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """The table surface: a row a cell for each state, y running first; counter-body heights last."""
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    parts = [
+        {
+            "state": np.full(x.size, each.state),
+            "x_m": x.ravel(),
+            "y_m": y.ravel(),
+            "height_m": patch.of_body.ravel(),
+            "p_Pa": each.contact.pressure.ravel(),
+            "worn_m": np.zeros(x.size) if each.worn is None else each.worn.ravel(),
+            "friction": each.local_friction.ravel(),
+        }
+        for each in snapshots
+    ]
+    table = {name: np.concatenate([part[name] for part in parts]) for name in SURFACE}
+    if patch.opposite is not None:
+        table[COUNTER_HEIGHT] = np.concatenate(
+            [patch.opposite(each.stretch, each.place).ravel() for each in snapshots]
+        )
+    return table | {"state": table["state"].tolist()}
+
+
+def rough_quantities(grid: CellGrid, contact: Contact) -> dict[str, float | None]:
+    """Contact spots, which join at the sides of cells and may be cut by the edge of the patch; the share
+    of the patch in contact; the mean of the gap over the patch.
+    """
+    mean = float(contact.gap.mean())
+    return {
+        "contact_spots": float(spots_of(contact.pressure, grid.wraps).max()),
+        "contact_share": contact_area(contact, grid) / (grid.nx * grid.hx * grid.ny * grid.hy),
+        "mean_gap_m": mean if np.isfinite(mean) else None,
+    }
+
+
+def rough_warnings(
+    patch: RoughPatch, remedies: Remedies, grid: CellGrid, contact: Contact
+) -> tuple[str, ...]:
+    """What a user should know about the peak, in words."""
+    out, touching, finer = [], contact.pressure > 0, remedies.finer_cells
+    finer = f": {finer}" if finer else ""
+    for surface in (patch.surface, patch.counter):
+        if surface is None or surface.kind == "file":
+            continue
+        cells = [s / h for s, h in zip(surface.shortest, (grid.hx, grid.hy), strict=True)]
+        if min(cells) < WELL_RESOLVED * (1 - 1e-6):
+            out.append(
+                f"{min(cells):.3g} cells in the shortest wavelength of the {surface.words}: with "
+                f"fewer than {WELL_RESOLVED:g} the largest pressure depends on where the cells lie{finer}"
+            )
+    if coarse := too_few_cells(contact.pressure, grid.wraps):
+        out.append(f"{coarse}{finer}")
+    if patch.relief and (made := in_the_fall_off(contact.pressure)):
+        out.append("; ".join(filter(None, (made, remedies.larger_patch))))
+    for surface in (patch.surface, patch.counter):
+        if surface is not None and surface.taper is not None:
+            changed, sq = patch.changed_by_taper(surface)
+            out.append(
+                f"{surface.table}.taper = {surface.taper:g}: so that they repeat, heights are changed by "
+                f"{changed:.4g} m (rms), {100 * changed / sq:.3g} % of their rms deviation"
+            )
+    if not grid.periodic and at_edge(touching, grid.line):
+        words, (bx, by) = (
+            "the contact touches the edge of the grid, where the half-space is cut",
+            grid.border,
+        )
+        if any(grid.border):
+            words += f": the outer {bx} x {by} cells do not count for p_max_Pa and mises_max_Pa; "
+            words += 'grid.border = "relief" lets the heights fall off'
+        else:  # the heights fall off already, and all cells count
+            can = either(remedies.larger_patch, remedies.less_load)
+            words += f' although the heights fall off there (grid.border = "relief"): {can}'
+        out.append(words)
+    return tuple(out)
+
+
+def spots_of(pressure: Array, wraps: tuple[bool, bool]) -> NDArray[np.intp]:
+    """The number of the spot of each cell (nx, ny), joined at their sides, 0 beside them; wraps: also across
+    the border along x and along y.
+    """
+    from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
+    spots, count = ndimage.label(pressure > 0)
+    if not any(wraps):
+        return np.asarray(spots)
+    from scipy import sparse  # noqa: PLC0415
+
+    borders = [[spots.take(0, axis), spots.take(-1, axis)] for axis in (0, 1) if wraps[axis]]
+    ends = np.concatenate(borders, axis=1)
+    ends = ends[:, (ends > 0).all(axis=0)]
+    pairs = sparse.coo_matrix((np.ones(ends.shape[1]), tuple(ends)), shape=(count + 1, count + 1))
+    return np.asarray(sparse.csgraph.connected_components(pairs, directed=False)[1][spots])
+
+
+def too_few_cells(pressure: Array, wraps: tuple[bool, bool] = (False, False)) -> str:
+    """What to know about spots (nx, ny) in Pa that few cells resolve, joined at their sides."""
+    spots = spots_of(pressure, wraps)
+    if not spots.any():
+        return ""
+    cells = np.bincount(spots.ravel())[1:]
+    share = np.bincount(spots.ravel(), pressure.ravel())[1:] / pressure.sum()
+    judged = share >= LEAST_SHARE
+    judged[spots[np.unravel_index(pressure.argmax(), pressure.shape)] - 1] = True
+    least = fewest_in_spot(pressure)
+    few = judged & (cells < least)
+    if not few.any():
+        return ""
+    counts = ", ".join(map(str, sorted(cells[few], reverse=True)))
+    return (
+        f"too few cells in {few.sum()} of {judged.sum()} spots with {100 * LEAST_SHARE:g} % of the load or "
+        f"more, or with the largest pressure ({counts} cells; together {100 * share[few].sum():.3g} % of the "
+        f"load): with fewer than {least} the largest pressure of a spot is off by some percent"
+    )
+
+
+def in_the_fall_off(pressure: Array) -> str:
+    """What to know about spots (nx, ny) in Pa where grid.border = "relief" lowers the heights."""
+    from scipy import ndimage  # noqa: PLC0415 - for rough scenes alone
+
+    spots, (bx, by) = ndimage.label(pressure > 0)[0].ravel(), border_cells(pressure.shape)
+    border = np.ones(pressure.shape, dtype=bool)
+    border[bx:-bx, by:-by] = False
+    share = np.bincount(spots, pressure.ravel())[1:] / pressure.sum()
+    outside = np.bincount(spots, (pressure * border).ravel())[1:] / pressure.sum()
+    number = np.count_nonzero((share >= LEAST_SHARE) & (outside > 0.5 * share))
+    what = ["the largest pressure"] * bool(pressure[border].max() == pressure.max() > 0)
+    what += [f"{number} of the spots with {100 * LEAST_SHARE:g} % of the load or more"] * bool(number)
+    if not what:
+        return ""
+    return (
+        f'grid.border = "relief" lowers the heights of the outer {bx} x {by} cells, which have '
+        f"{' and '.join(what)}: the surface itself need not have them"
+    )

@@ -9,7 +9,7 @@ from math import sqrt
 from typing import Any, Literal
 
 from sam.scene.section import Conflict, Given, Section, of_choice, stated
-from sam.scene.surface.readers import FrictionField
+from sam.scene.surface.height_map import FrictionField
 from sam.scene.units import Coefficient, Growth, Length, Poisson, Pressure, Speed, StrainLimit, Temperature
 from sam.scene.yield_curve import off_unit
 

@@ -19,16 +19,26 @@ from typing import Any, Required, TypedDict, Unpack
 from pydantic import BaseModel, ValidationError
 
 from sam.arrays import ROUNDING
-from sam.scene.body import Body
-from sam.scene.counterbody import CounterBody
+from sam.scene.body import Body, CounterBody
 from sam.scene.friction import Friction
 from sam.scene.loading import MISFIT_SPHERE, TO_AND_FRO, Loading, Strokes
 from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
-from sam.scene.section import NOT_YET, Conflict, Given, SceneError, Section, broken, problems, stated
+from sam.scene.section import (
+    NOT_YET,
+    Conflict,
+    Given,
+    SceneError,
+    Section,
+    broken,
+    nameless,
+    problems,
+    stated,
+    tables_of,
+    toml,
+)
 from sam.scene.surface import CounterSurface, FrictionMap, Strip, Surface, leading, patch_of
 from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
 from sam.scene.units import COUNT, STRAIN
-from sam.scene.writing import nameless, tables_of, toml
 
 Keys = Mapping[str, object]
 

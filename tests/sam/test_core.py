@@ -44,7 +44,7 @@ from sam.plasticity.load_step import GivenPressure
 from sam.plasticity.paper import PaperProblem
 from sam.plasticity.state import MaterialFields, Trial
 from sam.results import quantities
-from sam.results.snapshots import Box, Sliding
+from sam.results.history import Box, Sliding
 from sam.scene.yield_curve import Kinks, Linear
 from sam.schedule import Load
 

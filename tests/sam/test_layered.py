@@ -20,8 +20,8 @@ from sam.grid.smooth import contact_radius, depths_with_film
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
 from sam.layered.patches import LayeredPatches, RadialTable, spline_matrix, wave_numbers
 from sam.layered.response import Layers, Response
+from sam.results.history import Coated, Comparison
 from sam.results.quantities import coated_quantities
-from sam.results.snapshots import Coated, Comparison
 from sam.scene import Scene, Status
 
 THICKNESS = 1e-7

@@ -12,8 +12,7 @@ import sam
 import sam.grid.smooth
 from sam import choose_grid
 from sam.contact.convolution import Counters
-from sam.elastic.history import solve_elastic
-from sam.elastic.stress import elastic_peak
+from sam.elastic.problem import elastic_peak, solve_elastic
 from sam.grid.cells import MOST_TIMES, RATIO, Room, Sides, enlarged
 from sam.grid.smooth import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes

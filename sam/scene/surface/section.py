@@ -12,8 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from sam.scene.inputs import listed
 from sam.scene.numerics import Grid
 from sam.scene.section import Conflict, Given, Section, broken, of_choice, stated
-from sam.scene.surface.height_map import HeightMap
-from sam.scene.surface.readers import HeightField
+from sam.scene.surface.height_map import HeightField, HeightMap
 from sam.scene.units import (
     CELLS,
     LENGTH,

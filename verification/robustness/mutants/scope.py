@@ -17,7 +17,7 @@ from verification.robustness.mutants.changes import Mutant, find, rows
 CORE = {
     "sam": "moving schedule wear",
     "sam.contact": "box convolution normal operators stress",
-    "sam.elastic": "misfit problem stress",
+    "sam.elastic": "misfit problem",
     "sam.grid": "gap",
     "sam.kernels": "eigenstrain layer_stress patches primitives",
     "sam.layered": "patches response",
