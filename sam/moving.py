@@ -20,7 +20,7 @@ from sam.arrays import Array, Mask
 from sam.contact.stress import von_mises
 from sam.grid.cells import CellGrid, Window
 from sam.results.history import History, Moved, PassEnd, Row, Snapshot
-from sam.results.quantities import refined_peak
+from sam.results.tables import refined_peak
 from sam.scene.groove import RUN_IN, RUN_OUT, Groove, passes_to_steady, steady_part
 from sam.scene.result import (
     CROSS,

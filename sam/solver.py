@@ -22,17 +22,19 @@ from sam.planner.make import check_bodies, left_out_of_unyielding, plan_of
 from sam.plasticity.history import on_larger_grid, solve_plastic
 from sam.plasticity.model import Progressed
 from sam.results.history import History, Row, Snapshot, cycles_table, history_table, loops_table, of_ends
-from sam.results.quantities import EVEN, quantities, with_extrapolation
 from sam.results.tables import (
+    EVEN,
     advice,
     cycle_grids,
     field_mesh,
+    quantities,
     rough_discretisation,
     rough_quantities,
     rough_warnings,
     state_grids,
     state_tables,
     surface_table,
+    with_extrapolation,
 )
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model

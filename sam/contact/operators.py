@@ -47,8 +47,7 @@ from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity
 from sam.kernels.waves import in_cells, load_waves, strain_displacement_waves, whole_waves
-from sam.layered.patches import LayeredPatches
-from sam.layered.response import Layers
+from sam.layered.patches import LayeredPatches, Layers
 
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 

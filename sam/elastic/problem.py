@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The plan of a solve, the elastic bodies on its grid, their contact under a load and the state it makes.
-
-Stresses of an elastic state at the output depths (paper Eq. 7, first sum), how friction moves its surface,
-and the onset of yield: whether the stress of the largest load yields anywhere.
-
-The load history of a body that stays elastic.
+"""The plan of a solve, the elastic bodies on its grid, their contact under a load and the state it makes:
+stresses at the output depths (paper Eq. 7, first sum), how friction moves the surface, and whether the stress
+of the largest load yields anywhere. The load history of a body that stays elastic.
 """
 
 from __future__ import annotations
@@ -29,10 +26,8 @@ from sam.contact.operators import (
 )
 from sam.contact.stress import DEPTHS_AT_ONCE, elastic_strain, stresses, von_mises, yielding
 from sam.elastic.misfit import MisfitSphere
-from sam.grid.cells import CellGrid, Room, Sides, Window
-from sam.grid.gap import InitialGap, Shape
-from sam.grid.rough import RoughDemand, RoughPatch
-from sam.grid.smooth import GridDemand, MisfitDemand
+from sam.grid.cells import CellGrid, InitialGap, Room, Shape, Sides, Window
+from sam.grid.demands import GridDemand, MisfitDemand, RoughDemand, RoughPatch
 from sam.half_space import ElasticPair
 from sam.kernels.patches import Lags
 from sam.moving import Track

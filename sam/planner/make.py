@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""From a scene to its plan, or to the reason why the semi-analytical model cannot solve it.
-
-The stages of a plan, in the order in which they begin: those that run with their sizes, and why others are
-left out.
+"""From a scene to its plan, or to the reason why the semi-analytical model cannot solve it; and the stages of
+a plan, in the order in which they begin: those that run with their sizes, and why others are left out.
 
 A stage runs where the plan has the part that it works on; nothing else decides on it. What only the solve can
 tell, as the size of the plastic zone, is not among the sizes.
@@ -20,8 +18,16 @@ from sam.arrays import ROUNDING
 from sam.contact.operators import PeriodicHalfSpaces
 from sam.elastic.problem import Places, Plan
 from sam.grid.cells import CellGrid, Room
-from sam.grid.rough import MOST_ACROSS, RoughPatch, step_across
-from sam.grid.smooth import EVEN_DEPTH, MOST_CELLS, MOST_LAYERS, PLASTIC_CELLS, GridDemand
+from sam.grid.demands import (
+    EVEN_DEPTH,
+    MOST_ACROSS,
+    MOST_CELLS,
+    MOST_LAYERS,
+    PLASTIC_CELLS,
+    GridDemand,
+    RoughPatch,
+    step_across,
+)
 from sam.half_space import ElasticPair
 from sam.moving import Growth, Track
 from sam.planner.bodies import Bodies, coarse, given_sides

@@ -5,11 +5,9 @@ makes of a record.
 A `Model` holds numbers, laws and fields. `Model.problem` builds the operators of a box; it keeps those that
 it built last, which saves time and changes no result.
 
-The record of a load history: all that later steps read, so a history continued from it takes the same
-steps, bit for bit.
-
-A checkpoint holds this record and nothing else. It is frozen; `sam.plasticity.history.onward` makes the next
-one of it.
+`Progressed` is the record of a load history: all that later steps read, so a history continued from it takes
+the same steps, bit for bit. A checkpoint holds this record and nothing else. It is frozen;
+`sam.plasticity.history.onward` makes the next one of it.
 """
 
 from __future__ import annotations

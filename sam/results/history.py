@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Load steps and cycles: a record of each, and their tables.
-
-States that go into the tables, and what friction, a coating and an offset contact add to them.
+"""Load steps, cycles and states: a record of each, and the tables of steps and cycles; what friction, a
+coating and an offset contact add to a state.
 """
 
 from __future__ import annotations

@@ -9,12 +9,10 @@ load cattrs.
 from importlib import import_module
 from typing import Any
 
-from sam.scene.body import LAWS, SHAPES, Body, Coating, CounterBody, Hardening, Plasticity
-from sam.scene.friction import Friction
+from sam.scene.body import LAWS, SHAPES, Body, Coating, CounterBody, Friction, Hardening, Plasticity
 from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
 from sam.scene.load import check_kind, load_scene, parse_scene, parse_toml, read_scene, scene_of
-from sam.scene.loading import Loading, Pass, Path, Strokes
-from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
+from sam.scene.numerics import Compare, Fem, Grid, Loading, Pass, Path, Solver, Strokes, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
 from sam.scene.result import (
     COLUMNS,

@@ -19,10 +19,8 @@ from typing import Any, Required, TypedDict, Unpack
 from pydantic import BaseModel, ValidationError
 
 from sam.arrays import ROUNDING
-from sam.scene.body import Body, CounterBody
-from sam.scene.friction import Friction
-from sam.scene.loading import MISFIT_SPHERE, TO_AND_FRO, Loading, Strokes
-from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
+from sam.scene.body import Body, CounterBody, Friction
+from sam.scene.numerics import MISFIT_SPHERE, TO_AND_FRO, Compare, Fem, Grid, Loading, Solver, Strokes, Wear
 from sam.scene.section import (
     NOT_YET,
     Conflict,

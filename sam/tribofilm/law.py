@@ -37,7 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array, Mask
-from sam.scene.friction import Friction
+from sam.scene.body import Friction
 from sam.scene.section import stated
 
 

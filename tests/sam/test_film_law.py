@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from sam.contact.stress import elastic_strain, surface_strain
-from sam.scene.friction import Friction, growth_coefficient
+from sam.scene.body import Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, printed_stress, radial_flow
 from verification.cases.film import film_law

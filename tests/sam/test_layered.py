@@ -16,12 +16,11 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.operators import CoatedBodies, SurfaceOperators
 from sam.grid.cells import Window
-from sam.grid.smooth import contact_radius, depths_with_film
+from sam.grid.demands import contact_radius, depths_with_film
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
-from sam.layered.patches import LayeredPatches, RadialTable, spline_matrix, wave_numbers
-from sam.layered.response import Layers, Response
+from sam.layered.patches import LayeredPatches, Layers, RadialTable, Response, spline_matrix, wave_numbers
 from sam.results.history import Coated, Comparison
-from sam.results.quantities import coated_quantities
+from sam.results.tables import coated_quantities
 from sam.scene import Scene, Status
 
 THICKNESS = 1e-7

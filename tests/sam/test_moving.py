@@ -14,7 +14,7 @@ from sam.grid.cells import CellGrid, Window
 from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
 from sam.results.history import Box
-from sam.results.quantities import refined_peak
+from sam.results.tables import refined_peak
 from sam.scene import HeightMap, Scene, SceneError, Status
 from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED

@@ -12,7 +12,7 @@ from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import PeriodicHalfSpaces
 from sam.grid.cells import Window
-from sam.grid.rough import step_across, tapered
+from sam.grid.demands import step_across, tapered
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.kernels.waves import in_cells, load_waves
 from sam.plasticity.spectra import BoxOperator, PeriodicOperator

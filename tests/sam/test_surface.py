@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from builders import measured_scene
 
-from sam.grid.rough import RoughPatch
+from sam.grid.demands import RoughPatch
 from sam.scene import Grid, HeightMap, SceneError, Surface, load_scene
 from sam.scene.surface import (
     BORDER,
