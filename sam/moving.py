@@ -232,7 +232,9 @@ Tables = dict[str, dict[str, Any]]
 def path_tables(track: Track, grid: CellGrid, history: History, film: TribofilmState | None) -> Tables:
     """The tables of passes and visits of a film; track and cross of a body that yielded on a path in x."""
     last, passes = list(history.snapshots.values())[-1], history.passes
-    tables: Tables = {"passes": _passes(passes)} if passes else {}
+    of_pass, tables = zip(PASSES, fields(PassEnd), strict=True), Tables()
+    if passes:
+        tables["passes"] = {name: [getattr(end, each.name) for end in passes] for name, each in of_pass}
     worn = last.worn is not None
     if passes and (worn or film is not None):
         tables["passes"] |= _surface_of_passes(track, history)
@@ -263,11 +265,6 @@ def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str,
         name: None if (value := values.get(name)) is None or np.isnan(value) else float(value)
         for name in PATH_QUANTITIES
     }
-
-
-def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
-    of_pass = zip(PASSES, fields(PassEnd), strict=True)
-    return {name: [getattr(passed, field.name) for passed in passes] for name, field in of_pass}
 
 
 def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:

@@ -36,12 +36,8 @@ from sam.contact.convolution import (
     MirroredConvolution,
     PeriodicConvolution,
     Real,
-    between_pairs,
     convolution_onto,
-    cropped,
-    filtered,
     half_length,
-    transformed,
 )
 from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants, ElasticPair
@@ -235,7 +231,9 @@ class SurfaceOperators:
     def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution:
         """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
         if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
-            return PeriodicConvolution(self.coefficients, mirrored, self.counters)
+            spectrum = fft.rfft2(self.coefficients).real
+            spectrum = spectrum[: self.shape[0] // 2 + 1] if mirrored else spectrum
+            return PeriodicConvolution(spectrum, self.shape, mirrored, self.counters)
         few = DirectConvolution if box.nx * box.ny <= FEW_CELLS else BoxConvolution
         return (MirroredConvolution if mirrored else few)(self.coefficients, box.shape, self.counters)
 
@@ -299,21 +297,10 @@ class SurfaceOperators:
         k[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(self.bodies.real)
-
-        if few := not mirrored and box.nx * box.ny <= FEW_CELLS:
-            matrix = between_pairs(fft.irfft2(symbol, box.shape).astype(symbol.dtype))
-
-        def apply(r: Real) -> Real:
-            self.counters.ffts += 2
-            if mirrored:
-                return filtered(r, box.shape, symbol)
-            if few:
-                return np.asarray((matrix @ r.ravel()).reshape(box.shape))
-            spectrum = transformed(r, box.shape)
-            spectrum *= symbol
-            return cropped(spectrum, box.shape, box.shape)
-
-        return apply
+        if not mirrored and box.nx * box.ny <= FEW_CELLS:
+            kernel = fft.irfft2(symbol, box.shape).astype(symbol.dtype)
+            return DirectConvolution(kernel, box.shape, self.counters)
+        return PeriodicConvolution(symbol, box.shape, mirrored, self.counters)
 
 
 def moved_rows(

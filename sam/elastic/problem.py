@@ -72,11 +72,9 @@ class GivenHertz:
     def pressure(self, grid: CellGrid, load: Load, window: Window | None = None) -> Array:
         """The mean over each cell of a window or of the grid, about the place of the load, (nx, ny) in Pa."""
         i, j = (grid.whole if window is None else window).slices
-        return self._mean((grid.x[i], grid.y[j]), (grid.hx, grid.hy), load)
-
-    def _mean(self, centres: tuple[Array, Array], cell: tuple[float, float], load: Load) -> Array:
-        (x, y), a = centres, self.radius
-        out, part = np.zeros((x.size, y.size)), (np.arange(PARTS) + 0.5) / PARTS - 0.5
+        centres, cell, a = (grid.x[i], grid.y[j]), (grid.hx, grid.hy), self.radius
+        out = np.zeros((centres[0].size, centres[1].size))
+        part = (np.arange(PARTS) + 0.5) / PARTS - 0.5
         places = load.x, load.y
         i, j = (np.flatnonzero(np.abs(c - o) < a + h) for c, o, h in zip(centres, places, cell, strict=True))
         if load.force == 0 or not (i.size and j.size):

@@ -13,7 +13,6 @@ from math import acos, cos, inf, pi, sin, sqrt
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.scene.section import stated
 from sam.schedule import UNLOADED, Load
 
 
@@ -281,7 +280,7 @@ class InitialGap:
     grid: CellGrid
     heights: Array | None = None
     opposite: Callable[[int, Place], Array] | None = None
-    start: Place | None = None
+    start: Place | None = None  # of the path, where the surfaces touch first
     known: dict[tuple[Place, int], Array] = field(default_factory=dict, compare=False, repr=False)
     touching: dict[int, float] = field(default_factory=dict, compare=False, repr=False)
 
@@ -291,7 +290,9 @@ class InitialGap:
         if (at, stretch) not in self.known:
             gap = self._between(at, stretch)
             if self.heights is not None or self.opposite is not None:
-                gap = gap - (gap.min() if self.start is None else self._first(stretch))
+                if self.start is not None and stretch not in self.touching:
+                    self.touching[stretch] = float(self._between(self.start, stretch).min())
+                gap = gap - (gap.min() if self.start is None else self.touching[stretch])
             self.known.clear()
             self.known[at, stretch] = gap
         return self.known[at, stretch]
@@ -302,9 +303,3 @@ class InitialGap:
         if self.heights is not None:
             gap = gap - self.heights
         return gap if self.opposite is None else gap - self.opposite(stretch, at)
-
-    def _first(self, stretch: int) -> float:
-        """The smallest gap at the start of the path in m."""
-        if stretch not in self.touching:
-            self.touching[stretch] = float(self._between(stated(self.start), stretch).min())
-        return self.touching[stretch]

@@ -101,7 +101,7 @@ def plan_of(bodies: Bodies) -> Plan:
         wear=wear,
         judging=judging_of(scene),
         dissipates=counts_dissipation(scene),
-        period=period_of(scene),
+        period=PeriodicHalfSpaces(free=scene.loading.lateral == "free") if grid.periodic else None,
         coarser=plan(coarse(scene, grid)) if scene.solver.extrapolate else None,
     )
     return replace(made, stages=stages_of(scene, made))
@@ -154,13 +154,6 @@ def _targets_of_cycle(scene: Scene, schedule: Schedule, cycle: int) -> list[Targ
         name, zero = "unloaded" if last else "", Load(0.0, sign, *places[-1], stretch=stretch)
         targets.append(Target(cycle, len(targets) + 1, zero, False, name, elastic_unloading=True))
     return targets
-
-
-def period_of(scene: Scene) -> PeriodicHalfSpaces | None:
-    """Both bodies of a patch that repeats; None if it does not."""
-    if scene.grid is None or scene.grid.periodic != "xy":
-        return None
-    return PeriodicHalfSpaces(free=scene.loading.lateral == "free")
 
 
 def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:

@@ -40,7 +40,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 
@@ -282,11 +282,6 @@ class BackStresses:
     each: Array
     mutual: Array
 
-    @classmethod
-    def of(cls, each: Array) -> Self:
-        """Of the X_k0."""
-        return cls(each, np.einsum("s,js...,ks...->jk...", 1.5 * SHEAR, each, each, optimize=True))
-
     @cached_property
     def sum(self) -> Array:
         """(6, ...) in Pa."""
@@ -352,12 +347,6 @@ class KinematicMaterial(Material):
         """How it yields over a step that begins in a state."""
         return KinematicFlow(self, before)
 
-    def over_increment(self, peeq: Array, points: Mask) -> CurveOfIncrement:
-        """Yield stress and slope in Pa of some cells over the increment of their accumulated strain."""
-        factor = np.broadcast_to(self.factor, points.shape)[points]
-        before, curve = peeq[points], self.curve.at(points)
-        return lambda gamma: (factor * curve.stress(before + gamma), factor * curve.slope(before + gamma))
-
 
 @dataclass(frozen=True)
 class KinematicFlow(Flow):
@@ -380,7 +369,9 @@ class KinematicFlow(Flow):
     @cached_property
     def at_start(self) -> BackStresses:
         """The back-stresses at the beginning."""
-        return BackStresses.of(self.back.of_strains(self.start))
+        each = self.back.of_strains(self.start)
+        mutual = np.einsum("s,js...,ks...->jk...", 1.5 * SHEAR, each, each, optimize=True)
+        return BackStresses(each, mutual)
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
@@ -388,11 +379,13 @@ class KinematicFlow(Flow):
         increment = np.zeros_like(trial)
         if not flowing.any():
             return increment
+        factor = np.broadcast_to(self.material.factor, flowing.shape)[flowing]
+        before, curve = self.before.peeq[flowing], self.material.curve.at(flowing)
         gamma, eta = kinematic_multiplier(
             trial[:, flowing],
             self.at_start.at(flowing),
             self.back.at(flowing),
-            self.material.over_increment(self.before.peeq, flowing),
+            lambda dp: (factor * curve.stress(before + dp), factor * curve.slope(before + dp)),
             m3=3 * m,
             near=np.broadcast_to(near, flowing.shape)[flowing],
         )

@@ -123,7 +123,7 @@ class BoxSpectra:
 
     def full_space(self, observed: int, sources: slice) -> Array:
         """See `sam.plasticity.swept.Exact`."""
-        found = self._layer_stress(slice(observed, observed + 1), sources).of_full_space(0)
+        found = self._layer_stress(slice(observed, observed + 1), sources).of_part(0, image=False)
         parts = [self._periodic(part, False, observed, j) for j, part in enumerate(found, sources.start)]
         return np.stack(parts, axis=2)
 
@@ -132,7 +132,7 @@ class BoxSpectra:
         some = slice(0, layers)
         stress, out = self._layer_stress(some, some), np.empty((6, layers, 6, layers, self.waves))
         for i in range(layers):
-            for j, part in enumerate(stress.of_image(i)):
+            for j, part in enumerate(stress.of_part(i, image=True)):
                 out[:, i, :, j] = self._periodic(part, True, i, j)
         return out
 

@@ -56,11 +56,8 @@ _WORDS = {"string_type": "a string", "bool_type": "true or false", "model_type":
 T = TypeVar("T")
 
 
-class _Missing:
-    """Stands for the value of a key that should be there."""
-
-
-MISSING_INPUT = _Missing()
+MISSING_INPUT = object()
+"""Stands for the value of a key that should be there."""
 
 
 @dataclass(frozen=True)
@@ -264,7 +261,9 @@ class Section(BaseModel):
         kind, context = item["type"], item.get("ctx", {})
         name = str(item["loc"][0]) if item["loc"] else ""
         if kind == "extra_forbidden":
-            return cls._unknown(name, isinstance(item["input"], Mapping)) if hints else "unknown key"
+            near = cls._near(name, isinstance(item["input"], Mapping)) if hints else ()
+            hint = f"did you mean {' or '.join(near)}? " if near else ""
+            return f"unknown key, {hint}allowed here: {', '.join(cls._names())}" if hints else "unknown key"
         if kind == "missing":
             return f"required: {cls._field_in_words(name, in_file(info))}"
         if kind == "literal_error":
@@ -288,13 +287,6 @@ class Section(BaseModel):
                 or near
             )
         return near
-
-    @classmethod
-    def _unknown(cls, name: str, is_table: bool) -> str:
-        """What is allowed for an unknown key."""
-        near = cls._near(name, is_table)
-        hint = f"did you mean {' or '.join(near)}? " if near else ""
-        return f"unknown key, {hint}allowed here: {', '.join(cls._names())}"
 
     @classmethod
     def _field_in_words(cls, name: str, file: bool) -> str:
