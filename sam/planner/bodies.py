@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from sam.contact.operators import CoatedPair
-from sam.elastic.misfit import PROFILES, MisfitSphere
-from sam.elastic.problem import Demand, GivenHertz
+from sam.elastic.problem import PROFILES, Demand, GivenHertz, MisfitSphere
 from sam.grid.cells import CellGrid, Paraboloid, Punch, RoundedPunch, Shape, Sides, Uniform
 from sam.grid.demands import (
     DEFAULT_EXTENT,

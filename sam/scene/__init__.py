@@ -11,7 +11,6 @@ from typing import Any
 
 from sam.scene.body import LAWS, SHAPES, Body, Coating, CounterBody, Friction, Hardening, Plasticity
 from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
-from sam.scene.load import check_kind, load_scene, parse_scene, parse_toml, read_scene, scene_of
 from sam.scene.numerics import Compare, Fem, Grid, Loading, Pass, Path, Solver, Strokes, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
 from sam.scene.result import (
@@ -35,7 +34,17 @@ from sam.scene.result import (
     Status,
     Table,
 )
-from sam.scene.schema import Scene, resolved, solved_part
+from sam.scene.schema import (
+    Scene,
+    check_kind,
+    load_scene,
+    parse_scene,
+    parse_toml,
+    read_scene,
+    resolved,
+    scene_of,
+    solved_part,
+)
 from sam.scene.section import (
     Conflict,
     Problem,

@@ -9,7 +9,7 @@ from builders import PERFECT, scene
 from scipy.integrate import quad
 
 import sam
-from sam.elastic.misfit import PROFILES, MisfitSphere
+from sam.elastic.problem import PROFILES, MisfitSphere
 from sam.grid.cells import CellGrid, Room
 from sam.grid.demands import MisfitDemand
 from sam.half_space import ElasticConstants

@@ -18,7 +18,7 @@ from sam.scene.surface import (
     roughness_as_read,
     with_relief,
 )
-from sam.scene.surface.measured import fitted_form, harmonic, resampled
+from sam.scene.surface.making import fitted_form, harmonic, resampled
 from verification.robustness.fuzz import npz
 
 SIDE = 64e-6
