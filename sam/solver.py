@@ -105,32 +105,24 @@ def solve(
     return with_extrapolation(before, fine, finds_force=plan.schedule.peak.approach is not None)
 
 
-class _Clock:
-    """Times in s of set-up and solve, with those of the parts of the solve that an interruption ended."""
-
-    def __init__(self, before: Mapping[str, Any] | None):
-        self.before = before or {"setup_s": 0.0, "solve_s": 0.0}
-        self.began = self.ready = time.perf_counter()
-
-    def times(self) -> dict[str, float]:
-        """Both times so far."""
-        setup, solving = self.ready - self.began, time.perf_counter() - self.ready
-        return {"setup_s": self.before["setup_s"] + setup, "solve_s": self.before["solve_s"] + solving}
-
-
 KeepRecord = Callable[[Progressed, int, int], None]
 
 
 def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
     """The result of a plan, on a larger grid where plastic zone or contact reach the edge of a chosen one."""
-    clock, counters, first = _Clock(start.cost if start else None), Counters(), plan.grid
+    began, counters, first = time.perf_counter(), Counters(), plan.grid
+    earlier = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}  # before an interruption
     record = start.record(Progressed) if start is not None else None
     plan = plan if record is None else plan.on(record.room)
-    clock.ready = time.perf_counter()
+    ready = time.perf_counter()
+
+    def times() -> dict[str, float]:
+        solving = time.perf_counter() - ready
+        return {"setup_s": earlier["setup_s"] + (ready - began), "solve_s": earlier["solve_s"] + solving}
 
     def keep(record: Progressed, done: int, total: int) -> None:
         if checkpoint is not None:
-            checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
+            checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=times()))
 
     keeper = keep if checkpoint is not None else None
     history, record = _on_grid(plan, counters, report, keep=keeper, start=record)
@@ -145,7 +137,7 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
         history,
         record,
         counters=counters,
-        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED.split()},
+        cost=times() | {name: getattr(counters, name) for name in COUNTED.split()},
     )
     if plan.grid.room == Room():
         return result

@@ -32,15 +32,19 @@ from sam.arrays import Array
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, Search, around, fit_of, no_contact, solve_contact
 from sam.contact.operators import (
+    DEPTHS_AT_ONCE,
     HALF_SPACES,
     LINE,
     CoatedPair,
     HalfSpaces,
     PeriodicHalfSpaces,
     SurfaceOperators,
+    elastic_strain,
     moved_rows,
+    stresses,
+    von_mises,
+    yielding,
 )
-from sam.contact.stress import DEPTHS_AT_ONCE, elastic_strain, stresses, von_mises, yielding
 from sam.grid.cells import CellGrid, InitialGap, Room, Shape, Sides, Window
 from sam.grid.demands import GridDemand, MisfitDemand, RoughDemand, RoughPatch
 from sam.half_space import ElasticConstants, ElasticPair
@@ -330,11 +334,6 @@ class Plan:
         if self.grid.line:
             return LINE
         return HALF_SPACES if self.period is None else self.period
-
-    @property
-    def unloads(self) -> bool:
-        """Whether the history ends unloaded."""
-        return self.schedule.unloads
 
     @property
     def paper(self) -> bool:

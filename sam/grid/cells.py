@@ -83,13 +83,6 @@ class CellGrid:
         return Window(0, 0, self.nx, self.ny)
 
     @property
-    def layer_faces(self) -> Array:
-        """Depths of the faces of all layers, (nz + 1,) in m; ValueError for a grid without layers."""
-        if self.faces is None:
-            raise ValueError("the grid has no layers")
-        return self.faces
-
-    @property
     def cell_area(self) -> float:
         """Area of a cell in m^2."""
         return self.hx * self.hy

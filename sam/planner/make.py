@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import ceil, inf
+from math import ceil, inf, nan
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from sam.grid.demands import (
     step_across,
 )
 from sam.half_space import ElasticPair
-from sam.moving import Growth, Track
+from sam.moving import Track
 from sam.planner.bodies import Bodies, coarse, given_sides
 from sam.results.tables import Remedies
 from sam.scene import CounterBody, LeftOut, Path, Scene, Stage, remedies
@@ -38,7 +38,7 @@ from sam.scene.section import stated
 from sam.scene.verdict import VERDICT, counts_dissipation, judging_of, periods_of, reason_without
 from sam.schedule import Coefficient, FullSlip, Load, Schedule, Target
 from sam.tribofilm.law import FilmLaw
-from sam.tribofilm.state import FilmOnCells, VisitLaw
+from sam.tribofilm.state import FilmOnCells
 from sam.wear import WearLaw, limit_by_depth
 
 WHOLE = 1e-6  # of a wave: so much more or less still repeats
@@ -60,10 +60,8 @@ def plan_of(bodies: Bodies) -> Plan:
     track = track_of(scene, bodies.axes) if scene.moves else None
     film = wear = None
     if friction is not None and friction.film:
-        visited = None
-        if track is not None:
-            visited = VisitLaw(None if track.growth is None else track.growth.rate, track.period)
-        film = FilmOnCells(FilmLaw.of(friction), grid.shape, visited)
+        visits = (None, None) if track is None else (track.growth_rate, track.period)
+        film = FilmOnCells(FilmLaw.of(friction), grid.shape, *visits)
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
         wear = WearLaw(
@@ -185,7 +183,7 @@ def slip_of(scene: Scene, pair: ElasticPair, grid: CellGrid) -> FullSlip:
 def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
     """The track of a counter-body that moves; axes: of the contact in m."""
     path, other, strip = stated(scene.loading.path), stated(scene.counterbody), scene.counter_strip
-    plane, period, friction, growth = other.shape == "flat", path.length, scene.friction, None
+    plane, period, friction, rate = other.shape == "flat", path.length, scene.friction, None
     curvatures = (0.0, 0.0) if plane else None
     if other.radii is not None:
         curvatures = 1 / other.radii[0], 1 / other.radii[1]
@@ -195,7 +193,7 @@ def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
     if plane:  # summits carry it, of the counter-body alone or of both
         carries = stated(strip).slip if scene.surface is None else 0.0
     if friction is not None and friction.growth_rate is not None:
-        growth = Growth(friction.growth_rate, stated(friction.speed))
+        rate = friction.growth_rate
         if not (plane or path.to_and_fro):
             period = stated(friction.track)
     return Track(
@@ -209,7 +207,8 @@ def track_of(scene: Scene, axes: tuple[float, float]) -> Track:
         strip=strip,
         period=period,
         returns=path.to_and_fro,
-        growth=growth,
+        growth_rate=rate,
+        speed=nan if friction is None or rate is None else stated(friction.speed),
     )
 
 
@@ -515,7 +514,7 @@ def _plastic(scene: Scene, plan: Plan) -> Iterator[Stage]:
         where = "the contact" if plan.given is None else "the given pressure"
         where = "the misfit strain" if plan.misfit is not None else where
         words = f"method {plan.solver.method}, {where} inside it{plasticity.of_layer}"
-        steps = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.unloads else {})
+        steps = {"steps": plan.steps} | ({"unload_steps": plan.unload_steps} if plan.schedule.unloads else {})
         if plan.period is not None:
             held = "stress" if plan.period.free else "strain"
             words += f"; the mean of the lateral {held} is zero at each depth"
@@ -562,13 +561,13 @@ def _output(scene: Scene, plan: Plan) -> Iterator[Stage]:
     grid, yielding = plan.grid, plan.plasticity is not None
     depths, deepest = len(grid.depths), float(grid.depths[-1])
     coefficients = stress_coefficients(plan) if plan.misfit is None else 0
-    if plan.unloads and not yielding:
+    if plan.schedule.unloads and not yielding:
         yield _stage("unloading", "", "elastic: in one step", steps=1)
         yield _stage("unloading steps", "elastic: unloading in one step is exact")
     else:
         why_not, words = "loading.unload = false", "in one step if that strains nothing, else in equal ones"
-        yield _stage("unloading", why_not * (not plan.unloads), words, steps=plan.unload_steps)
-    words = f"in the plane y = 0 at peak load{' and unloaded' if plan.unloads and yielding else ''}"
+        yield _stage("unloading", why_not * (not plan.schedule.unloads), words, steps=plan.unload_steps)
+    words = f"in the plane y = 0 at peak load{' and unloaded' if plan.schedule.unloads and yielding else ''}"
     size = {"depths": depths, "largest_depth_m": deepest, "coefficients": coefficients}
     yield Stage("stresses at the output depths", True, words, size)
     stage = "stress outside the plane y = 0"

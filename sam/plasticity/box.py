@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.contact.convolution import half_length
 from sam.contact.normal import around, margin_around
-from sam.contact.stress import yielding
+from sam.contact.operators import yielding
 from sam.elastic.problem import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.plasticity.points import OFFSET

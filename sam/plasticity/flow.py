@@ -45,8 +45,9 @@ from typing import ClassVar
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.stress import yielding
+from sam.contact.operators import yielding
 from sam.plasticity.state import MaterialFields
+from sam.scene.section import stated
 from sam.scene.yield_curve import YieldCurve, plastic_work, step_energies
 
 ITERATIONS = 50
@@ -211,16 +212,11 @@ class BackStressFields:
     modulus: Array
     recovery: Array
 
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return len(self.modulus)
-
     def at(self, points: Mask) -> BackStressFields:
         """Those of some of the points, (N, n)."""
 
         def of(values: Array) -> Array:
-            return np.broadcast_to(values, (self.count, *points.shape))[:, points]
+            return np.broadcast_to(values, (len(values), *points.shape))[:, points]
 
         return BackStressFields(of(self.modulus), of(self.recovery))
 
@@ -329,9 +325,7 @@ class KinematicMaterial(Material):
 
     def back_stress(self, fields: MaterialFields) -> Array:
         """The sum of the back-stresses in Pa, (6, ...)."""
-        if fields.back is None:
-            raise ValueError("the fields have no back-stress")
-        return self.back.of_strains(fields.back).sum(axis=0)
+        return self.back.of_strains(stated(fields.back)).sum(axis=0)
 
     def at(self, cells: Mask) -> KinematicMaterial:
         """The material of some cells, (n_layers, nx, ny), in a row: for points (..., n)."""
@@ -341,7 +335,7 @@ class KinematicMaterial(Material):
 
     def virgin(self, shape: tuple[int, ...]) -> MaterialFields:
         """The fields of points that never yielded."""
-        return MaterialFields.zero(shape, self.back.count)
+        return MaterialFields.zero(shape, len(self.back.modulus))
 
     def flow(self, before: MaterialFields) -> Flow:
         """How it yields over a step that begins in a state."""
@@ -362,9 +356,7 @@ class KinematicFlow(Flow):
     @property
     def start(self) -> Array:
         """The strains a_k of the back-stresses at the beginning, (N, 6, ...)."""
-        if self.before.back is None:
-            raise ValueError("the state has no back-stress")
-        return self.before.back
+        return stated(self.before.back)
 
     @cached_property
     def at_start(self) -> BackStresses:

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import von_mises
+from sam.contact.operators import von_mises
 from sam.elastic.problem import UNLOADING, ElasticPeak, ElasticProblem
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.box import edge_reached, first_extent, grown, holding
@@ -24,7 +24,6 @@ from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
     dissipated_by,
-    known_outside,
     penetrated,
     problem_of,
     snapshot,
@@ -46,6 +45,7 @@ from sam.plasticity.state import (
 from sam.results.history import History, row_of
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress, unfinished
+from sam.scene.section import stated
 from sam.schedule import Load, Target
 from sam.tribofilm.state import TribofilmState
 
@@ -70,10 +70,8 @@ def solve_plastic(
         record = start
         problem_of(model, record)
         vars(model.counters).update(vars(record.counters))
-    elif peak is not None:
-        record = begun(model, model.plan.schedule.targets, first_box(model, peak))
     else:
-        raise ValueError("either a record or the elastic peak is needed")
+        record = begun(model, model.plan.schedule.targets, first_box(model, stated(peak)))
     while not record.ended:
         before = len(record.history.rows), record.parts.count
         record = onward(model, record)
@@ -89,9 +87,8 @@ def solve_plastic(
 
 def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed:
     """The record before the first step, on a first box."""
-    film = (
-        None if model.plan.tribofilm is None else model.plan.tribofilm.fresh(np.zeros((4, *model.grid.shape)))
-    )
+    law, unstrained = model.plan.tribofilm, np.zeros((4, *model.grid.shape))
+    film = None if law is None else law.fresh(unstrained)
     wear = None if model.plan.wear is None else model.plan.wear.fresh()
     state = model.problem(extent, film, wear).virgin()
     return Progressed(state, extent, model.grid.room, tuple(targets), replace(model.counters), film, wear)
@@ -343,7 +340,7 @@ def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> 
     end = cycle_end(model, record, cycle, np.zeros(extent.shape) if new is None else new)
     history = replace(history, ends=(*history.ends, end))
     if track is not None:
-        uz, rows = known_outside(record).displacement, history.rows
+        uz, rows = stated(record.outside).displacement, history.rows
         added = record.state.material.peeq if start is None else start.new_strain(record.state, extent)
         last = track.pass_end(model.grid, cycle, uz=uz, added=added, window=extent.window, rows=rows)
         history = replace(history, passes=(*history.passes, last))
@@ -388,9 +385,9 @@ def _joined(*notes: str) -> str:
 
 def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
     """The same record in the middle of a larger grid of equal cells, or None if it cannot be."""
-    wider, faces = grid.shape != larger.shape, grid.layer_faces
+    wider, faces = grid.shape != larger.shape, stated(grid.faces)
     of_whole_grid = wider and (record.wear is not None or record.tribofilm is not None)
-    same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
+    same_layers = np.array_equal(faces, stated(larger.faces)[: len(faces)])
     if record.history.snapshots or of_whole_grid or not same_layers:
         return None
     i, j = (larger.nx - grid.nx) // 2, (larger.ny - grid.ny) // 2

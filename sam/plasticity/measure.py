@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
-from sam.contact.stress import von_mises
+from sam.contact.operators import von_mises
 from sam.elastic.problem import plane_stress, sliding_of
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
@@ -56,7 +56,7 @@ def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
 
 def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact on the full grid, found once more where single precision left it too far."""
-    window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
+    window, load, moved = record.extent.window, trial.load, stated(record.outside).displacement
     gap, source = model.worn_gap(load, record.wear) + moved, problem_of(model, record).pressure
     if load.force == 0:
         return model.untouched(load, gap)
@@ -111,13 +111,6 @@ def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> P
     return record if known is record.outside else replace(record, outside=known)
 
 
-def known_outside(record: Progressed) -> Outside:
-    """The fields outside of the box; ValueError for a record without them, see `with_outside`."""
-    if record.outside is None:
-        raise ValueError("the record has no fields outside of its box")
-    return record.outside
-
-
 def _residual_stress(model: Model, record: Progressed) -> Array:
     """Stress of plastic strain in the rows that touch y = 0; zero where the box covers them."""
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
@@ -139,6 +132,7 @@ def _swept_stress(model: Model, record: Progressed) -> Array:
     the largest two cells beside strained ones, .001 % beside a patch with zones of tens of cells.
     """
     grid, rows, box = model.grid, model.grid.axis_rows, record.extent.window
+    faces = stated(grid.faces)
     j0, j1 = min(box.j0, rows.j0 - 1), max(box.j0 + box.ny, rows.j0 + rows.ny + 1)
     extent = Extent(Window(0, j0, grid.nx, j1 - j0), len(grid.depths))
     operator = model.operator(extent, once=Counters())
@@ -148,7 +142,7 @@ def _swept_stress(model: Model, record: Progressed) -> Array:
     first = rows.j0 - 1 - j0
     means = operator.whole(operator.stress(None, response))[..., first : first + rows.ny + 2].astype(float)
     centres = means[..., 1:-1].copy()
-    for axis, edges in enumerate((grid.layer_faces, np.arange(grid.nx + 1.0), np.arange(rows.ny + 3.0)), 1):
+    for axis, edges in enumerate((faces, np.arange(grid.nx + 1.0), np.arange(rows.ny + 3.0)), 1):
         bend = np.moveaxis(_bend(np.moveaxis(means, axis, 0), edges), 0, axis)
         ends = [(int(k == axis < 3),) * 2 for k in range(4)]
         centres -= np.pad(bend, ends, mode="edge")[..., slice(1, -1) if axis < 3 else slice(None)] / 24
@@ -186,7 +180,7 @@ def _moved_grid(model: Model, record: Progressed) -> Array:
 
 def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
     """A state in y = 0: of the cells in the box, and at the cell centres outside of it."""
-    outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
+    outside, material, rows = stated(record.outside), record.state.material, model.grid.axis_rows
     grid, extent, window, layers = model.grid, record.extent, record.extent.window, record.extent.layers
     contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
     loaded = model.state(trial.load, contact, mu)
@@ -197,7 +191,7 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     strain = _filled(model, extent, np.zeros_like(stress), material.strain)
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
+        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(stated(grid.faces)))
     back = model.material(extent).at(material.cells).back_stress(material.points)
     repeated = {} if back is None else {BACK_STRESS: filled(back.mean(axis=1), material.cells)}
 
@@ -300,7 +294,7 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
 
 def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far."""
-    moved, rough, wear = known_outside(record).displacement, model.plan.rough, record.wear
+    moved, rough, wear = stated(record.outside).displacement, model.plan.rough, record.wear
     lowered = moved if wear is None else moved + wear.depth
     end = CycleEnd(
         cycle,

@@ -22,8 +22,7 @@ import numpy as np
 from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.box import BoxContact
 from sam.contact.convolution import Convolution, Counters
-from sam.contact.operators import SurfaceOperators
-from sam.contact.stress import surface_strain
+from sam.contact.operators import SurfaceOperators, surface_strain
 from sam.elastic.problem import ElasticProblem, Plan
 from sam.grid.cells import CellGrid, Room, Window
 from sam.kernels.patches import Cuboids, Lags
@@ -113,7 +112,7 @@ class Model(ElasticProblem):
 
     def faces(self, extent: Extent) -> Array:
         """Depths of the faces of the layers of a box, (n_layers + 1,) in m."""
-        return self.grid.layer_faces[: extent.layers + 1]
+        return stated(self.grid.faces)[: extent.layers + 1]
 
     def volumes(self, extent: Extent) -> Array:
         """Volume of a cell of each layer of a box, (n_layers, 1, 1) in m^3."""
@@ -322,15 +321,13 @@ class Periods:
 
     def ended(self, model: Model, state: State, extent: Extent) -> Periods:
         """The same with the period that a state ends, before anything is removed from it."""
-        if self.begun is None or model.plan.judging is None:
-            raise ValueError("no period has begun")
         earlier = (*(replace(period, strain=None) for period in self.last[:-1]), *self.last[-1:])
-        added = (*earlier, self.begun.added(state, extent))
+        added = (*earlier, stated(self.begun).added(state, extent))
         verdict = verdict_on(
             _compared(added, extent),
             state.material.peeq.ravel(),
             _yield_strain(model, extent),
-            model.plan.judging,
+            stated(model.plan.judging),
             volume=np.broadcast_to(model.volumes(extent), extent.shape).ravel(),
         )
         return Periods(None, added, (*self.verdicts, verdict))
@@ -367,9 +364,7 @@ def _yield_strain(model: Model, extent: Extent) -> Array:
 
 def floor(model: Model, extent: Extent) -> Array:
     """Strain of each cell of a box below which a period counts as without plastic strain, (n,)."""
-    if model.plan.judging is None:
-        raise ValueError("the scene is not judged")
-    return model.plan.judging.floor * _yield_strain(model, extent)
+    return stated(model.plan.judging).floor * _yield_strain(model, extent)
 
 
 @dataclass(frozen=True)

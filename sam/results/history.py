@@ -160,7 +160,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class PassEnd:
-    """What a pass over a path leaves; lengths as of `sam.scene.groove`; drive: mean force in N."""
+    """What a pass over a path leaves; lengths as of `sam.scene.verdict`; drive: mean force in N."""
 
     cycle: int
     direction: int

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
 from sam.contact.normal import Contact, fewest_in_spot
-from sam.contact.stress import von_mises
+from sam.contact.operators import von_mises
 from sam.grid.cells import CellGrid, at_edge
 from sam.grid.demands import RoughPatch
 from sam.half_space import equivalent_radius

@@ -30,8 +30,7 @@ from fem_reference.common.plasticity import J2, History
 from fem_reference.common.schedule import Load as FemLoad
 from fem_reference.spatial import recovery as spatial
 from sam.contact.convolution import Counters
-from sam.contact.operators import CoatedPair
-from sam.contact.stress import von_mises
+from sam.contact.operators import CoatedPair, von_mises
 from sam.elastic.problem import GivenHertz
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from sam.contact.stress import elastic_strain, surface_strain
+from sam.contact.operators import elastic_strain, surface_strain
 from sam.scene.body import Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, printed_stress, radial_flow

@@ -16,7 +16,7 @@ from verification.robustness.mutants.changes import Mutant, find, rows
 
 CORE = {
     "sam": "moving schedule wear",
-    "sam.contact": "box convolution normal operators stress",
+    "sam.contact": "box convolution normal operators",
     "sam.elastic": "problem",
     "sam.grid": "cells",
     "sam.kernels": "eigenstrain layer_stress patches primitives",
