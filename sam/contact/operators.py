@@ -130,8 +130,7 @@ LINE = RepeatedAlongY()
 
 class CoatedBodies(HalfSpaces):
     """A coated body 1 and a homogeneous body 2; a traction's coupling is its coefficient. Plates
-    bend with a compliance like k^-4, so that the iteration may rest long. modulus: E* in Pa;
-    compliance, tangential: (1 - nu2^2)/E2, (1 - 2 nu2)/mu2 in 1/Pa of body 2, 0 if rigid.
+    bend with a compliance like k^-4, so that the iteration may rest long. hx: side of a cell in m.
     """
 
     most_iterations = 5000  # limit: a plate rests long before it moves on
@@ -141,17 +140,10 @@ class CoatedBodies(HalfSpaces):
         np.inf
     )  # p is projected in each iteration: 46 displacements on 65 x 65 cells, 53 at 0.4
 
-    def __init__(
-        self,
-        layered: LayeredPatches,
-        hx: float,
-        modulus: float,
-        *,
-        compliance: float = 0.0,
-        tangential: float = 0.0,
-    ):
-        self.layered, self.hx, self.modulus = layered, hx, modulus
-        self.compliance, self.tangential_compliance = compliance, tangential
+    def __init__(self, pair: CoatedPair, hx: float):
+        self.pair, self.hx = pair, hx
+        self.layered, self.modulus = pair.layered, pair.pair.contact_modulus
+        self.compliance, self.tangential_compliance = pair.compliance, pair.tangential_compliance
         self._known: dict[tuple[Lags, int], Array] = {}
         self._coarser: CoatedBodies | None = None
 
@@ -191,13 +183,7 @@ class CoatedBodies(HalfSpaces):
     def coarser(self) -> CoatedBodies:
         """The same bodies for cells twice as large; made once."""
         if self._coarser is None:
-            self._coarser = CoatedBodies(
-                self.layered,
-                2 * self.hx,
-                self.modulus,
-                compliance=self.compliance,
-                tangential=self.tangential_compliance,
-            )
+            self._coarser = CoatedBodies(self.pair, 2 * self.hx)
         return self._coarser
 
 
@@ -351,13 +337,7 @@ class CoatedPair:
         """Their coefficients on a grid; those of the last one are kept."""
         if grid.hx not in self._known:
             self._known.clear()
-            self._known[grid.hx] = CoatedBodies(
-                self.layered,
-                grid.hx,
-                self.pair.contact_modulus,
-                compliance=self.compliance,
-                tangential=self.tangential_compliance,
-            )
+            self._known[grid.hx] = CoatedBodies(self, grid.hx)
         return self._known[grid.hx]
 
     def counter_uz(

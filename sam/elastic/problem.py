@@ -503,7 +503,7 @@ def stresses_of(state: Loaded, row: int | None = None) -> Stresses:
     """
     problem = state.problem
     if problem.plan.places.anywhere:
-        return _stresses_anywhere(state, counted(state.contact, problem.plan.grid), row)
+        return _stresses_anywhere(state, row)
     plane, rows = plane_stress(state), problem.plan.grid.axis_rows
     if row is None:
         return Stresses(plane, _in_cells(plane))
@@ -519,9 +519,10 @@ def _in_cells(rows: Array) -> Array:
     return von_mises(rows).reshape(rows.shape[1], -1)
 
 
-def _stresses_anywhere(state: Loaded, window: Window, row: int | None) -> Stresses:
-    """The largest von Mises stress in a window of the grid, in blocks of depths, which bounds the memory."""
+def _stresses_anywhere(state: Loaded, row: int | None) -> Stresses:
+    """The largest von Mises stress of the cells that count, in blocks of depths, which bounds the memory."""
     grid = state.problem.plan.grid
+    window = counted(state.contact, grid)
     block, rows = depths_at_once(grid), grid.axis_rows.slices[1]
     largest, plane, cut = [], [], []
     for k in range(0, len(grid.depths), block):

@@ -116,8 +116,16 @@ def onward(model: Model, record: Progressed) -> Progressed:
         return replace(record, counters=replace(model.counters))
     record = replace(record, cuts=record.cuts or (target.load,))
     record, trial = attempt(model, record, record.cuts[0])
-    if trial is not None and not trial.converged:
-        record = _cut(model, record, trial)
+    if trial is not None and not trial.converged:  # half of the way comes first
+        record = replace(record, parts=record.parts.tried(trial))
+        if len(record.cuts) <= MOST_CUTS:
+            model.counters.step_cuts += 1
+            halfway = record.state.load.halfway_to(record.cuts[0])
+            record = replace(record, cuts=(halfway, *record.cuts))
+        elif record.longer or model.plan.paper:
+            record = _given_up(record, trial)
+        else:
+            record = replace(record, longer=True, cuts=record.cuts[-1:])
     elif trial is not None:
         record = replace(record, cuts=record.cuts[1:], parts=record.parts.with_(trial))
         record = record if record.cuts else _reached(model, record, target, trial)
@@ -258,17 +266,6 @@ def _given_up(record: Progressed, trial: Trial) -> Progressed:
     words = f"the plastic iteration of the last attempt, to {trial.load.force:.6g} N,"
     ending = unfinished(words, trial.history, trial.goal)
     return _ended(record, Status.STEP_CUT_LIMIT, ending, Sides())
-
-
-def _cut(model: Model, record: Progressed, trial: Trial) -> Progressed:
-    """After a failed attempt half of the way comes first; after MOST_CUTS the longer iteration or the end."""
-    record = replace(record, parts=record.parts.tried(trial))
-    if len(record.cuts) > MOST_CUTS:
-        if record.longer or model.plan.paper:
-            return _given_up(record, trial)
-        return replace(record, longer=True, cuts=record.cuts[-1:])
-    model.counters.step_cuts += 1
-    return replace(record, cuts=(record.state.load.halfway_to(record.cuts[0]), *record.cuts))
 
 
 def _unloaded_elastically(model: Model, record: Progressed, target: Target) -> Progressed:
