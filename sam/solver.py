@@ -292,7 +292,7 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
             tables["cycles"] |= verdict_columns(cycles, verdicts, plan.judging.period)
         if plan.wear is not None:
             tables["cycles"][ROOFED] = of_ends(cycles, ends, "roofed")
-            if plan.wear.roof_falls or plan.wear.fills:
+            if plan.wear.rule.roof == "falls" or plan.wear.rule.smoothing_fills:
                 parts = {column: of_ends(cycles, ends, name) for column, name in WEAR_PARTS.items()}
                 tables["cycles"] |= parts
         if plan.paper:

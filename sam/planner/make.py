@@ -64,18 +64,7 @@ def plan_of(bodies: Bodies) -> Plan:
         film = FilmOnCells(FilmLaw.of(friction), grid.shape, *visits)
     if scene.wear is not None and scene.wear.removes:
         limits = limit_by_depth(scene.wear, None if plasticity is None else plasticity.layer_thickness)
-        wear = WearLaw(
-            grid.shape,
-            grid.hx,
-            grid.hy,
-            limits,
-            scene.wear.interpolate,
-            scene.wear.smoothing_window,
-            scene.wear.smoothing_order,
-            grid.wraps,
-            roof_falls=scene.wear.roof == "falls",
-            fills=scene.wear.smoothing_fills,
-        )
+        wear = WearLaw(grid.shape, grid.hx, grid.hy, limits, scene.wear, grid.wraps)
     rough, last = bodies.patch, schedule.targets[-1].load
     made = Plan(
         grid=grid,

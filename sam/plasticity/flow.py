@@ -40,7 +40,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -278,6 +278,11 @@ class BackStresses:
     each: Array
     mutual: Array
 
+    @classmethod
+    def of(cls, each: Array) -> Self:
+        """Of the X_k0."""
+        return cls(each, np.einsum("s,js...,ks...->jk...", 1.5 * SHEAR, each, each, optimize=True))
+
     @cached_property
     def sum(self) -> Array:
         """(6, ...) in Pa."""
@@ -361,9 +366,7 @@ class KinematicFlow(Flow):
     @cached_property
     def at_start(self) -> BackStresses:
         """The back-stresses at the beginning."""
-        each = self.back.of_strains(self.start)
-        mutual = np.einsum("s,js...,ks...->jk...", 1.5 * SHEAR, each, each, optimize=True)
-        return BackStresses(each, mutual)
+        return BackStresses.of(self.back.of_strains(self.start))
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
