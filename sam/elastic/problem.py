@@ -219,8 +219,8 @@ class GivenHertz:
 
     def pressure(self, grid: CellGrid, load: Load, window: Window | None = None) -> Array:
         """The mean over each cell of a window or of the grid, about the place of the load, (nx, ny) in Pa."""
-        i, j = (grid.whole if window is None else window).slices
-        centres, cell, a = (grid.x[i], grid.y[j]), (grid.hx, grid.hy), self.radius
+        in_x, in_y = (grid.whole if window is None else window).slices
+        centres, cell, a = (grid.x[in_x], grid.y[in_y]), (grid.hx, grid.hy), self.radius
         out = np.zeros((centres[0].size, centres[1].size))
         part = (np.arange(PARTS) + 0.5) / PARTS - 0.5
         places = load.x, load.y

@@ -335,7 +335,8 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
     if not rows:
         added = record.periods.last[-1].on(record.extent, None).accumulated
         places = loop_places(added, material.peeq.ravel())
-        at = [tuple(map(int, np.unravel_index(place, record.extent.shape))) for place in places]
+        where = (np.unravel_index(place, record.extent.shape) for place in places)
+        at = [(int(layer), int(i), int(j)) for layer, i, j in where]
     cells = [
         LoopRow(
             (cell[0], cell[1] + window.i0, cell[2] + window.j0),
