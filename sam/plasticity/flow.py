@@ -354,11 +354,6 @@ class KinematicFlow(Flow):
     material: KinematicMaterial
 
     @property
-    def back(self) -> BackStressFields:
-        """The constants of the back-stresses."""
-        return self.material.back
-
-    @property
     def start(self) -> Array:
         """The strains a_k of the back-stresses at the beginning, (N, 6, ...)."""
         return stated(self.before.back)
@@ -366,7 +361,7 @@ class KinematicFlow(Flow):
     @cached_property
     def at_start(self) -> BackStresses:
         """The back-stresses at the beginning."""
-        return BackStresses.of(self.back.of_strains(self.start))
+        return BackStresses.of(self.material.back.of_strains(self.start))
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
@@ -379,7 +374,7 @@ class KinematicFlow(Flow):
         gamma, eta = kinematic_multiplier(
             trial[:, flowing],
             self.at_start.at(flowing),
-            self.back.at(flowing),
+            self.material.back.at(flowing),
             lambda dp: (factor * curve.stress(before + dp), factor * curve.slope(before + dp)),
             m3=3 * m,
             near=np.broadcast_to(near, flowing.shape)[flowing],
@@ -389,15 +384,15 @@ class KinematicFlow(Flow):
 
     def effective(self, x: Array, s: Array) -> Array:
         """The deviatoric stress less the back-stresses at the end of an increment x."""
-        end = self.start + self.back.change(self.start, x, equivalent_strain(x))
-        return s - self.back.of_strains(end).sum(axis=0)
+        end = self.start + self.material.back.change(self.start, x, equivalent_strain(x))
+        return s - self.material.back.of_strains(end).sum(axis=0)
 
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
-        return MaterialFields(strain=x, peeq=length, back=self.back.change(self.start, x, length))
+        return MaterialFields(strain=x, peeq=length, back=self.material.back.change(self.start, x, length))
 
     def dissipated(self, increment: MaterialFields) -> Array:
         """Energy that an increment dissipates in J/m^3, without what the back-stresses store."""
-        modulus, recovery = self.back.modulus, self.back.recovery
+        modulus, recovery = self.material.back.modulus, self.material.back.recovery
         back = step_energies(modulus, recovery, self.start, increment.strain, length=increment.peeq)
         return super().dissipated(increment) + back.dissipated

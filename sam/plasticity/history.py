@@ -444,7 +444,7 @@ def finished(model: Model, record: Progressed) -> History:
         certificate={
             **residuals,
             "yield_excess_outside_box": float(max(excess.max(), 0.0)),
-            "plastic_tolerance": model.tolerance,
+            "plastic_tolerance": model.plan.solver.tolerance,
         },
         discretisation={
             "plastic_box_cells": [window.nx, window.ny],

@@ -117,7 +117,7 @@ def _residual_stress(model: Model, record: Progressed) -> Array:
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     exchange = problem_of(model, record).operator.exchange
-    expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance, exchange)
+    expected = ExpectedBox(*window.shape, record.extent.layers, model.plan.solver.tolerance, exchange)
     large = (expected.large and model.asked_operator != "dense") or model.plan.period is not None
     if large and covered < len(grid.depths):
         return _swept_stress(model, record)

@@ -86,14 +86,9 @@ class Model(ElasticProblem):
         return self.plan.grid
 
     @property
-    def tolerance(self) -> float:
-        """Of the plastic iteration, see `Problem`."""
-        return self.plan.solver.tolerance
-
-    @property
     def contact_tolerance(self) -> float:
         """Residual that a contact may have: the last move of the surface in the paper's loops leaves it."""
-        return (PAPER_SHARE if self.plan.paper else CONTACT_SHARE) * self.tolerance
+        return (PAPER_SHARE if self.plan.paper else CONTACT_SHARE) * self.plan.solver.tolerance
 
     @property
     def unit(self) -> float:
@@ -154,7 +149,7 @@ class Model(ElasticProblem):
             pressure,
             self.material(extent),
             unit=self.unit,
-            tolerance=self.tolerance,
+            tolerance=self.plan.solver.tolerance,
             counters=self.counters,
             coefficient=coefficient,
             misfit=misfit,
@@ -188,10 +183,10 @@ class Model(ElasticProblem):
         counters.tangential_kernels += self.plan.slip.slides
         nx, ny = extent.window.shape
         exchange, asked = self._exchange(extent.window), self.asked_operator
-        repeats = self.plan.period is not None
-        box = ExpectedBox(nx, ny, extent.layers, self.tolerance, exchange, asked, periodic=repeats)
+        repeats, tolerance = self.plan.period is not None, self.plan.solver.tolerance
+        box = ExpectedBox(nx, ny, extent.layers, tolerance, exchange, asked, periodic=repeats)
         period, of_cells = self.plan.period, (self.cuboids(extent), self.plan.pair.body.shear, counters)
-        how: Any = {"tolerance": self.tolerance, "swept": box.swept}
+        how: Any = {"tolerance": tolerance, "swept": box.swept}
         if period is not None:
             return PeriodicOperator(period, *of_cells, **how)
         return BoxOperator(*of_cells, mirror=self._mirror(extent.window), exchange=exchange, **how)

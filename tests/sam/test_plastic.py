@@ -69,7 +69,7 @@ def test_the_body_is_of_cells_of_the_grid(swift4):
     for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
         first = np.abs(centres - h / 2 - faces[0]).argmin()
         np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
-    np.testing.assert_allclose(body.z, grid.layer_faces[: len(body.z)], rtol=1e-12)
+    np.testing.assert_allclose(body.z, grid.faces[: len(body.z)], rtol=1e-12)
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():

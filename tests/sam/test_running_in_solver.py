@@ -105,7 +105,7 @@ def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_le
     for model, now, trial, film in failing:
         again = model.problem(now.extent, film, None).step(now.state, trial.load)
         off = 2 * model.plan.pair.body.shear * np.abs(again.increment.strain - trial.increment.strain).max()
-        assert off <= 5 * model.tolerance * model.plan.initial_yield.min()
+        assert off <= 5 * model.plan.solver.tolerance * model.plan.initial_yield.min()
     assert failing and any(trial.plastic for _, _, trial, _ in failing)
 
 
