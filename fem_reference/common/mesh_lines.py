@@ -52,7 +52,11 @@ def uniform_then_growing(
 def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
     """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
     below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
-    core = size * np.arange(-below, above + 1)
+    return widened(size * np.arange(-below, above + 1), size, box, growth)
+
+
+def widened(core: Array, size: float, box: float, growth: float) -> Array:
+    """Equidistant lines continued by growing ones over `box` beyond both ends."""
     outside = grow(0.0, box, size, growth)
     return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])
 

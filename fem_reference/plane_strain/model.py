@@ -137,7 +137,6 @@ def build(plan: PlaneStrainPlan) -> Model:
     candidates = slice(0 if plan.half else 1, surface.size - 1)
     problem = LineProblem(
         solids,
-        bodies.elastic,
         candidates,
         0.5 * surface[candidates] ** 2,
         length=plan.length,

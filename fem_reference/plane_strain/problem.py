@@ -28,7 +28,6 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres, splu
 
 from fem_reference.common.arrays import Array, Bools, Integers
-from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import flamant, stretched
 from fem_reference.common.linear import Counted, Kept
@@ -59,14 +58,13 @@ class LineProblem:
     def __init__(
         self,
         solids: Sequence[PlaneSolid],
-        elastic: Sequence[Elastic],
         candidates: slice,
         gap0: Array,
         *,
         length: float,
         material: Material | None = None,
     ):
-        self.solids, self.elastic, self.gap0, self.material = tuple(solids), tuple(elastic), gap0, material
+        self.solids, self.gap0, self.material = tuple(solids), gap0, material
         half = "axis" in solids[0].basis.mesh.boundaries
         self.length, self.share = length, (0.5 if half else 1.0) / length
         count = solids[0].size
@@ -84,7 +82,7 @@ class LineProblem:
             fixed[solids[0].boundary_dofs("axis", 0)] = True
         self.free = np.tile(~fixed, len(solids))
         self._factors = [_factor(solid, ~fixed) for solid in solids]
-        self._stretches = None if material is None else _stretches(solids[0], elastic[0], self.far)
+        self._stretches = None if material is None else _stretches(solids[0], self.far)
         self._columns: dict[tuple[np.intp, float], Array] = {}
 
     def with_gap(self, gap0: Array) -> LineProblem:
@@ -102,17 +100,17 @@ class LineProblem:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
         solid, force = self.solids[0], load.force / self.length
         parts = []
-        for elastic, sign in zip(self.elastic, self.signs[:, 0], strict=True):
+        for body, sign in zip(self.solids, self.signs[:, 0], strict=True):
             part = np.zeros(solid.size)
             for component, dofs in enumerate(self.far):
                 points = solid.basis.doflocs[:, dofs] - np.array([[load.x], [0.0]])
                 forces = force, sign * load.ratio * force
-                part[dofs] = flamant(forces, elastic, points, 0.5 * self.length)[component]
+                part[dofs] = flamant(forces, body.elastic, points, 0.5 * self.length)[component]
             parts.append(part)
         if history is not None and history.yielded and self._stretches is not None:
             for dofs, stretches in zip(self.far, self._stretches, strict=True):
                 xx, yy = (strain.ravel() for strain in history.plastic_strain[:2])
-                parts[0][dofs] += stretches @ (xx + self.elastic[0].poisson * yy)
+                parts[0][dofs] += stretches @ (xx + solid.elastic.poisson * yy)
         return np.concatenate(parts)
 
     def respond(self, u: Array, start: History | None) -> Response:
@@ -244,7 +242,7 @@ def _krylov(apply: Callable[[Array], Array], right: Array, *, scale: float, targ
     return y
 
 
-def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> list[LinearOperator]:
+def _stretches(solid: PlaneSolid, far: Sequence[Integers]) -> list[LinearOperator]:
     """u_x and u_z of the outer boundary by e_xx + nu e_yy at the Gauss points: (n_far, n_points), by way of
     the columns of points.
     """
@@ -257,7 +255,7 @@ def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> 
     out = []
     for component, dofs in enumerate(far):
         points = solid.basis.doflocs[:, dofs, None]
-        found = [stretched(elastic, points - np.array([shift, 0 * shift])[:, None]) for shift in shifts]
+        found = [stretched(solid.elastic, points - np.array([shift, 0 * shift])[:, None]) for shift in shifts]
         flat, deeper = (aslinearoperator(sum(u)[component]) for u in zip(*found, strict=True))
         out.append(flat @ areas[0] + deeper @ areas[1])
     return out

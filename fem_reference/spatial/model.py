@@ -44,7 +44,7 @@ class Model(ContactModel):
     @property
     def centred(self) -> bool:
         """Not of a rough body: nothing says where the middle is."""
-        return self.plan.kind == "smooth"
+        return self.plan.patch is None
 
     @property
     def part(self) -> float:
@@ -201,7 +201,6 @@ def build(plan: SpatialPlan) -> Model:
 
     problem = SlidingProblem(
         solid,
-        bodies.elastic[0],
         Candidates(surface.ravel()[candidates], gap0, plan.weights.ravel()[candidates], anchored=not moves),
         share=lines.share,
         material=material(bodies, plan.scales, solid),

@@ -164,7 +164,7 @@ def build(plan: SpatialPlan) -> RoughModel:
         carried=patch.radii is not None,
     )
     problem = SlidingProblem(
-        solid, bodies.elastic[0], touching, share=lines.share, material=material(bodies, plan.scales, solid)
+        solid, touching, share=lines.share, material=material(bodies, plan.scales, solid)
     )
     return RoughModel(plan, problem, surface, candidates, body, opposite, float(inside.min()), place=start)
 

@@ -25,7 +25,7 @@ from fem_reference.common.elasticity import on_grid
 from fem_reference.common.loading import Progressed, Step, follow
 from fem_reference.common.plasticity import History
 from fem_reference.spatial.planner import plan
-from fem_reference.spatial.recovery import largest_peeq, stresses
+from fem_reference.spatial.recovery import stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
 from fem_reference.spatial.solution import plane_table
 from sam.scene.result import Table
@@ -99,7 +99,7 @@ def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCy
             model, state = lowered(model, state, depth)
             uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
             moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
-            cycles.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
+            cycles.append(WornCycle(tables, fields.largest_peeq()[0], worn, moved))
         found.append(cycles)
     return found
 
