@@ -96,7 +96,14 @@ def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
         words = f"{', '.join(twice)}: scenes of one name would be written to one folder"
         refusals.found.append(FolderError(words))
     with refusals.kept():
-        _check_pages(given)
+        if given.report is not None:
+            from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
+
+            check_report(given.report)
+        if given.junit is not None:
+            above = given.junit.absolute().parent
+            if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
+                raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
     refusals.raise_any()
     return jobs
 
@@ -113,18 +120,6 @@ def _job(path: Path, folder: Path, given: SimpleNamespace) -> Job:
             check_target(folder / part)
     refusals.raise_any()
     return Job(path.stem, question, folder, inputs)
-
-
-def _check_pages(given: SimpleNamespace) -> None:
-    """Raise FolderError where a page or a JUnit file cannot be written."""
-    if given.report is not None:
-        from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
-
-        check_report(given.report)
-    if given.junit is not None:
-        above = given.junit.absolute().parent
-        if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
-            raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
 
 
 def _shown(folder: Path) -> list[Any]:
@@ -260,7 +255,10 @@ def _judge(
     claimed = [row.quantity for row in broken if row.row.metric == CLAIM]
     failed = [row.quantity for row in broken if row.row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
-        finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
+        layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
+        mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # rough: both have the same cells
+        advice = either(finer_cells(scene), layers, mesh) or "lower grid.extent"
+        finer = f"to see whether the meshes are too coarse, {advice}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
     if claimed:
         print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
@@ -268,10 +266,3 @@ def _judge(
         quantities = ", ".join(row.quantity for other, row in off if other == name)
         print(f"samfem: {name} is outside the tolerance: {quantities}", file=sys.stderr)
     return 1 if code or failed or claimed or off else 0
-
-
-def _finer(scene: Scene) -> str:
-    """What to refine of both models."""
-    layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
-    mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # of a rough one both have the same cells
-    return either(finer_cells(scene), layers, mesh) or "lower grid.extent"

@@ -78,32 +78,20 @@ def solve(
     made = check(scene, model, anyway=anyway or resume)
     check_target(folder)
     with locked(folder), kept_coefficients():
-        return _solve(scene, model, folder, inputs, made=made, figures=figures, resume=resume)
-
-
-def _solve(
-    scene: Scene,
-    model: str,
-    folder: Path,
-    inputs: dict[str, bytes],
-    *,
-    made: Any,
-    figures: bool,
-    resume: bool,
-) -> int:
-    if resume and checkpoints.is_finished(folder, scene, model):
-        result: Result | Run = read_run(folder)
-        print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
-    else:
-        drawn = figures_of(folder)
-        result = _solved(scene, model, folder, inputs, made=made, resume=resume)
-        if drawn and not figures and not figures_of(folder):
-            _say(f"the figures in {folder} were of another result and are removed: --figures draws new ones")
-    print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
-    print(folder / "summary.json")
-    if figures:
-        _draw(folder)
-    return unconverged([result])
+        if resume and checkpoints.is_finished(folder, scene, model):
+            result: Result | Run = read_run(folder)
+            _say(f"{folder} is already finished: nothing is solved")
+        else:
+            drawn = figures_of(folder)
+            result = _solved(scene, model, folder, inputs, made=made, resume=resume)
+            if drawn and not figures and not figures_of(folder):
+                removed = "were of another result and are removed: --figures draws new ones"
+                _say(f"the figures in {folder} {removed}")
+        print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
+        print(folder / "summary.json")
+        if figures:
+            _draw(folder)
+        return unconverged([result])
 
 
 def _draw(folder: Path) -> None:

@@ -32,6 +32,7 @@ from sam.scene.result import (
     Table,
     residual_table,
 )
+from sam.scene.section import stated
 
 
 def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
@@ -212,9 +213,7 @@ def six(field: Array) -> Array:
 
 def _yield_strain(model: ContactModel) -> Array:
     """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
-    if model.problem.material is None:
-        raise ValueError("the body does not yield")
-    return model.scales.strain * model.problem.material.yield_strain.ravel()
+    return model.scales.strain * stated(model.problem.material).yield_strain.ravel()
 
 
 def verdicts_of(
