@@ -22,22 +22,20 @@ from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import normal_far_field
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.quadrilaterals import AxisymmetricSolid, elimination_order
+from fem_reference.common.quadrilaterals import AxisymmetricSolid, MatchedBodies, elimination_order
 from fem_reference.common.schedule import Load
 
 FEW = 12
 """Iterations with earlier factors, each a twentieth of new ones: beyond, these are cheaper."""
 
 
-class ContactProblem:
-    """One body against a rigid surface, or two whose surface nodes match, each in its own (r, z into the
-    body).
+class ContactProblem(MatchedBodies):
+    """One body against a rigid surface, or two.
 
-    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. material: of
-    the first body, None if it is elastic; the other body always is. prescribed: (size,) nodal forces of a
-    given pressure under a unit force, which then takes the place of contact. The outer boundary of each
-    body is displaced as by the point force that balances the contact, so that delta counts from infinity;
-    far: (size,), or so under a unit of the load.
+    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. prescribed:
+    (size,) nodal forces of a given pressure under a unit force, which then takes the place of contact. The
+    outer boundary of each body is displaced as by the point force that balances the contact, so that delta
+    counts from infinity; far: (size,), or so under a unit of the load.
     """
 
     anchored = True
@@ -51,38 +49,21 @@ class ContactProblem:
         *,
         far: Array | None = None,
     ):
-        self.solids, self.gap0, self.material, self.prescribed = tuple(solids), gap0, material, prescribed
-        sizes = [solid.size for solid in solids]
-        self.size = sum(sizes)
-        self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
-        surface = [solid.boundary_dofs("surface", 1)[: gap0.size] for solid in solids]
-        # (n_bodies, n_candidates): u_z of the candidates
-        self.normal = np.stack(surface) + self.offsets[:, None]
+        super().__init__(solids, slice(gap0.size), gap0, material)
+        self.prescribed = prescribed
         # displacements of the softer body are eliminated: those of a nearly rigid one are small differences
         self.slave = int(np.argmin([solid.elastic.young for solid in solids]))
-        self.fixed, self.far_field = self._supports(far)
         self.order = elimination_order(solids[0], len(solids))
-
-    def _supports(self, far: Array | None) -> tuple[Bools, Array]:
-        """(size,) prescribed degrees of freedom, and their values under a unit force."""
-        fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
-        for solid, offset in zip(self.solids, self.offsets, strict=True):
+        # (size,) prescribed degrees of freedom, and their values under a unit force
+        self.fixed, self.far_field = np.zeros(self.size, dtype=bool), np.zeros(self.size)
+        for i, solid in enumerate(solids):
+            fixed, values = self.fixed[i * self.count :], self.far_field[i * self.count :]
             for component in (0, 1):
                 outer = solid.boundary_dofs("far", component)
-                r, z = solid.basis.doflocs[:, outer]
-                fixed[offset + outer] = True
-                values[offset + outer] = (
-                    normal_far_field(solid.coating, solid.elastic, r, z)[component]
-                    if far is None
-                    else far[outer]
-                )
+                u = normal_far_field(solid.coating, solid.elastic, *solid.basis.doflocs[:, outer])
+                fixed[outer], values[outer] = True, u[component] if far is None else far[outer]
             axis = solid.boundary_dofs("axis", 0)
-            fixed[offset + axis], values[offset + axis] = True, 0.0
-        return fixed, values
-
-    def body(self, u: Array, index: int) -> Array:
-        """Displacements of one body."""
-        return u[self.offsets[index] :][: self.solids[index].size]
+            fixed[axis], values[axis] = True, 0.0
 
     def internal_force(self, u: Array, history: History | None = None) -> Array:
         """Internal force (size,) of all bodies when no plastic strain changes any more."""
@@ -104,10 +85,6 @@ class ContactProblem:
     def tangent(self, matrices: Sequence[sp.csr_matrix]) -> sp.csr_matrix:
         """Derivative of the internal force from that of each body."""
         return matrices[0] if len(matrices) == 1 else sp.block_diag(matrices, format="csr")
-
-    def gap(self, u: Array, approach: float) -> Array:
-        """gap0 + sum of u_z - delta at the candidates."""
-        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
     def elimination(self, active: Bools) -> tuple[sp.csr_matrix, Array]:
         """(T, d1) of changes T v + delta d1 that leave the gap of the active nodes as it is, for every v

@@ -32,7 +32,7 @@ from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import flamant, stretched
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.quadrilaterals import PlaneSolid, elimination_order
+from fem_reference.common.quadrilaterals import MatchedBodies, PlaneSolid, elimination_order
 from fem_reference.common.schedule import Load
 
 ACCURACY = 0.1
@@ -45,12 +45,11 @@ MOST = 120
 """Iterations of a linear solve; beyond, the body flows freely."""
 
 
-class LineProblem:
-    """One body, or two whose surface nodes match, each in its own (x, z into the body).
+class LineProblem(MatchedBodies):
+    """One body against a rigid surface, or two.
 
-    solids: the first may yield, with `material`; elastic: their constants; nodes: places in the surface of
-    the candidates, by x; gap0: (n_candidates,) their initial gap; length: of the contact along y, which
-    bears the forces of the loads; at half of it beside a line force the surface does not move along that.
+    length: of the contact along y, which bears the forces of the loads; at half of it beside a line force the
+    surface does not move along that.
     """
 
     anchored = False
@@ -64,19 +63,12 @@ class LineProblem:
         length: float,
         material: Material | None = None,
     ):
-        self.solids, self.gap0, self.material = tuple(solids), gap0, material
+        super().__init__(solids, candidates, gap0, material)
         half = "axis" in solids[0].basis.mesh.boundaries
         self.length, self.share = length, (0.5 if half else 1.0) / length
-        count = solids[0].size
-        self.size = count * len(solids)
-        # u_z and u_x of the candidates, (n_bodies, n_candidates)
-        first = np.arange(len(solids))[:, None] * count
-        self.normal, self.along = (
-            first + solids[0].boundary_dofs("surface", component)[candidates] for component in (1, 0)
-        )
         self.signs = np.array([1.0, -1.0])[: len(solids), None]
         self.far = [solids[0].boundary_dofs("far", component) for component in (0, 1)]
-        fixed = np.zeros(count, dtype=bool)
+        fixed = np.zeros(self.count, dtype=bool)
         fixed[np.concatenate(self.far)] = True
         if half:
             fixed[solids[0].boundary_dofs("axis", 0)] = True
@@ -90,11 +82,6 @@ class LineProblem:
         other = copy(self)
         other.gap0 = gap0
         return other
-
-    def body(self, u: Array, index: int) -> Array:
-        """Displacements of one body."""
-        count = self.solids[0].size
-        return u[index * count :][:count]
 
     def far_field(self, load: Load, history: History | None) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
@@ -125,10 +112,6 @@ class LineProblem:
         forces = [first.internal_force(update.stress), *forces]
         tangent = first.softened(update.elements, update.loss)
         return Response(np.concatenate(forces), tangent, update.history, start=start)
-
-    def gap(self, u: Array, approach: float) -> Array:
-        """gap0 + sum of u_z - delta at the candidates."""
-        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
     def reaction(self, response: Response) -> Array:
         """Whole force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
@@ -168,7 +151,7 @@ class LineProblem:
         Without contact the approach is that of first touch. Raises NotDefiniteError.
         """
         solve, elastic, free = Counted(self.inverse), self.solids[0].stiffness, self.free
-        softer, count = response.tangent is not elastic, self.solids[0].size
+        softer, count = response.tangent is not elastic, self.count
         nodes, ratio = np.flatnonzero(active), load.ratio
         # increments from the multipliers and the approach that u has, so that all are small near equilibrium
         before = response.force[self.normal[0, active]]
