@@ -14,7 +14,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
+from sam.scene import Problem, Result, SceneError, either, finer_cells, finer_mesh, read_scene
 from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked, seconds
 from samfem.refusals import Refusals, check_folder
 from samfem.solving import unconverged, write_solved
@@ -26,7 +26,6 @@ from verification.runs.files import (
     COMPANION,
     FIGURES,
     FolderError,
-    Run,
     check_target,
     clear_run,
     figures_of,
@@ -75,7 +74,7 @@ def compare(paths: Sequence[Path], **options: Any) -> int:
         _show_all(jobs, found)
     _write_pages(jobs, found, given)
     print(found[0].line if len(jobs) == 1 else _verdict(jobs, found))
-    return max(_judge(each.scene, each.results, each.rows, each.off) for each in found)
+    return max(map(_judge, found))
 
 
 def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
@@ -244,16 +243,11 @@ def _beside(row: Verdict | None) -> str:
     return NOT_COMPARED if row is None else f"{digits(row.error, 3)} {_ended(row)}"
 
 
-def _judge(
-    scene: Scene,
-    results: Sequence[Result | Run],
-    rows: Sequence[Verdict],
-    off: Sequence[tuple[str, Verdict]] = (),
-) -> int:
-    """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
-    code, broken = unconverged(results), [row for row in rows if not row.passed]
-    claimed = [row.quantity for row in broken if row.row.metric == CLAIM]
-    failed = [row.quantity for row in broken if row.row.metric != CLAIM]
+def _judge(found: Compared) -> int:
+    """Exit code; what did not hold, and what to change, on stderr."""
+    code, scene, off = unconverged(found.results), found.scene, found.off
+    claimed = [row.quantity for row in found.failed if row.row.metric == CLAIM]
+    failed = [row.quantity for row in found.failed if row.row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
         layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
         mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # rough: both have the same cells

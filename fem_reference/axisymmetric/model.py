@@ -63,7 +63,7 @@ class Model(ContactModel):
         """(n_surface,) multiplier over the area of the node; on the axis of `axis_pressure`."""
         if self.misfit is not None:
             return np.zeros(self.surface.size)
-        if self.prescribed:
+        if self.plan.prescribed:
             return state.force * hertz_pressure(self.surface)
         area = surface_weights(self.surface)
         p = np.zeros(self.surface.size)
@@ -73,7 +73,7 @@ class Model(ContactModel):
 
     def contact_radius(self, state: Equilibrium) -> float:
         """Contact radius: of a punch that of the last node in contact, else of `edge_radius`."""
-        if self.prescribed:
+        if self.plan.prescribed:
             return 1.0 if state.force and self.misfit is None else 0.0
         if not state.active.any():
             return 0.0

@@ -39,7 +39,7 @@ def plane_table(state: str, s: Stresses) -> Table:
 def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit = model.scales
-    force = peak.force if model.prescribed else float(peak.multipliers.sum())
+    force = peak.force if model.plan.prescribed else float(peak.multipliers.sum())
     return {
         "force_N": force * (model.plan.force / (unit.peak_force or 1.0)),
         "contact_radius_m": model.contact_radius(peak) * unit.length,

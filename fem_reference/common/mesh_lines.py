@@ -117,11 +117,9 @@ def marched(
     return scaled
 
 
-def coated_depths(
-    thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH, fewest: int = 2
-) -> Array:
-    """z lines to `box`, one at the interface, `fewest` elements or more above it, growing below."""
-    coating = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth=growth)
+def coated_depths(thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH) -> Array:
+    """z lines to `box`, one at the interface, two elements or more above it, growing below."""
+    coating = marched(0.0, thickness, min(sizes.fine, thickness / 2.0), sizes, growth=growth)
     last = coating[-1] - coating[-2] if coating.size > 1 else thickness
     below = marched(thickness, box, growth * last, sizes, growth=growth)
     return np.concatenate([[0.0], coating, below])

@@ -358,7 +358,7 @@ def quantities_of(
         peeq = peak.history.peeq * model.scales.strain
         strain = exceeded_strain(peeq.ravel(), model.body.weights.ravel())
     values: Quantities = {
-        "approach_m": None if model.prescribed else peak.approach * model.scales.displacement,
+        "approach_m": None if model.plan.prescribed else peak.approach * model.scales.displacement,
         "p_max_Pa": model.largest_pressure(peak),
         "mises_max_Pa": mises_max,
         "mises_max_depth_m": mises_depth,
@@ -402,7 +402,7 @@ def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
     if history is not None and material is not None:
         most = float(material.excess(model.stress(state), history).max())
         excess["yield_excess"] = max(0.0, most)
-    if state.force == 0.0 or model.prescribed:
+    if state.force == 0.0 or model.plan.prescribed:
         return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess
     total, active, judged = model.part * state.force, state.active, slice(model.on_axis, None)
     forces = model.contact_forces(state)

@@ -65,7 +65,7 @@ class Surface:
         bodies = range(len(model.problem.solids))
         opened = np.sum([model.problem.body(state.u, i)[normal] for i in bodies], axis=0)
         gap = model.at(state.load).initial_gap + opened - state.approach
-        gap = np.where(model.prescribed, np.nan, gap)
+        gap = np.where(model.plan.prescribed, np.nan, gap)
         ratio = state.load.ratio if model.plan.sliding.coefficient else None
         pressure = (model.nodal_pressure(state) * unit.pressure)[:, None]
         moved = np.stack([ux, none, uz])[..., None] * unit.displacement
@@ -172,7 +172,7 @@ def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained
             "cycle": step.cycle,
             "step": step.number,
             "force_N": model.plan.force * model.share(state),
-            "approach_m": None if model.prescribed else state.approach * unit.displacement,
+            "approach_m": None if model.plan.prescribed else state.approach * unit.displacement,
             "contact_area_m2": model.contact_area(state),
             "p_max_Pa": model.largest_pressure(state),
             "peeq_max": peeq_max(state) if step.peeq_max is None else step.peeq_max,

@@ -108,14 +108,14 @@ class Model(ContactModel):
 
     def nodal_pressure(self, state: Equilibrium) -> Array:
         """(nx + 1, ny + 1) multipliers over the areas of the nodes; the given pressure where it is given."""
-        if self.prescribed:
+        if self.plan.prescribed:
             x, y = self.lines.x[:, None] - state.load.x, self.lines.y[None, :] - state.load.y
             return state.force * hertz_pressure(np.hypot(x, y))
         return self.on_surface(state.multipliers) / self.lines.areas
 
     def area(self, state: Equilibrium) -> float:
         """Area of the contact, of both halves, in the units of the model."""
-        if self.prescribed:
+        if self.plan.prescribed:
             return np.pi if state.force else 0.0
         return contact_area(*self._edge_fields(state), half=self.lines.half)
 

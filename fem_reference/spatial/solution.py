@@ -46,7 +46,7 @@ def surface_of(model: Model, equilibrium: Equilibrium) -> Surface:
     x, y = (line * unit.length for line in (model.lines.x, model.lines.y))
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     ratio = model.ratio(equilibrium) if model.plan.sliding.coefficient else None
-    gap = np.where(model.prescribed, np.nan, gap * unit.displacement)
+    gap = np.where(model.plan.prescribed, np.nan, gap * unit.displacement)
     return Surface(x, y, pressure, ratio, gap, u * unit.displacement)
 
 
