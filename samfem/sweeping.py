@@ -24,7 +24,6 @@ from typing import Any
 import numpy as np
 
 from sam.scene import QUANTITIES, Problem, Progress as Told, Result, Scene, SceneError, resolved, spelling
-from sam.scene.section import stated
 from samfem.executors import Cluster, Failure, Processes, run
 from samfem.refusals import REFUSALS, check_folder
 from verification import ExtraError
@@ -131,7 +130,7 @@ class Sweep:
         if self.runs and not (source.reused and (place / SUMMARY).exists()):
             code = {"code_version": code_version(result.model)}
             write_run(
-                result, stated(point.scene), place, {**self.provenance, **code, **origin, **source.provenance}
+                result, _scene_of(point), place, {**self.provenance, **code, **origin, **source.provenance}
             )
 
     def place(self, index: int) -> Path:
@@ -294,7 +293,7 @@ def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool, progress: To
         state.write(always=True)
     equal: dict[str, list[int]] = {}
     for index, point in missing.items():
-        equal.setdefault(json_text(identity(stated(point.scene), model)), []).append(index)
+        equal.setdefault(json_text(identity(_scene_of(point), model)), []).append(index)
     same = {indices[0]: indices for indices in equal.values()}
     tasks = {index: (points[index].scene, model, code_version(model), anyway) for index in same}
     progress("sweep", 0, len(tasks))
@@ -306,7 +305,7 @@ def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool, progress: To
                 continue
             result, origin = outcome
             if state.store is not None:
-                state.store.keep(stated(point.scene), result.model, result)
+                state.store.keep(_scene_of(point), result.model, result)
             state.add(point, result, Reuse(False), origin)
         state.write()
         progress("sweep", done, len(tasks))
@@ -329,6 +328,12 @@ def _look_up(state: Sweep, progress: Told) -> Iterator[StudyPoint]:
     if state.notes:
         text = f"{len(state.notes)} results of the store cannot be used and are computed again"
         print(f"samfem: sweep: {text}: {state.notes[0]}", file=sys.stderr)
+
+
+def _scene_of(point: StudyPoint) -> Scene:
+    """Of a point that is not refused."""
+    assert point.scene is not None
+    return point.scene
 
 
 def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> Solved | Failure:
@@ -366,9 +371,10 @@ def index_rows(state: Sweep) -> Sequence[Cells]:
     study, shares, found = state.content.study, state.content.study.shares(), []
     columns = dict(zip(state.columns, zip(*state.ordered, strict=True), strict=True))
     converged = np.array(columns["status"]) == "converged"
+    assert study.seed is not None  # every design has one
     for name in QUANTITIES:
         values = np.where(converged, np.array(columns[name], dtype=float), np.nan)
-        for index in indices(study.mode, shares, values, stated(study.seed)):
+        for index in indices(study.mode, shares, values, study.seed):
             columns_of = zip(study.factors, index.values, *index.bounds, index.count, strict=True)
             rows = [(name, key, index.name, *each) for key, *each in columns_of]
             found += sorted(rows, key=lambda row: -abs(row[3]))

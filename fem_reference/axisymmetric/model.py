@@ -16,6 +16,7 @@ from fem_reference.axisymmetric.planner import AxisymmetricPlan
 from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import Solid
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
@@ -45,7 +46,7 @@ class Model(ContactModel):
         return self.problem.gap0.size
 
     @property
-    def body(self) -> AxisymmetricSolid:
+    def body(self) -> Solid:
         """The half-space of the scene."""
         return self.problem.solids[0]
 

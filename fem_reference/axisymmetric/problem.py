@@ -19,10 +19,11 @@ from scipy.sparse.linalg import LinearOperator, cg, splu
 
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import NotDefiniteError, Response
+from fem_reference.common.elasticity import Solid
 from fem_reference.common.far_field import normal_far_field
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.quadrilaterals import AxisymmetricSolid, MatchedBodies, elimination_order
+from fem_reference.common.quadrilaterals import MatchedBodies, elimination_order
 from fem_reference.common.schedule import Load
 
 FEW = 12
@@ -42,7 +43,7 @@ class ContactProblem(MatchedBodies):
 
     def __init__(
         self,
-        solids: Sequence[AxisymmetricSolid],
+        solids: Sequence[Solid],
         gap0: Array,
         material: Material | None = None,
         prescribed: Array | float = 0.0,

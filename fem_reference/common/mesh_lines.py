@@ -52,7 +52,7 @@ def uniform_then_growing(
 def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
     """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
     below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
-    return widened(size * np.arange(-below, above + 1), size, box, growth)
+    return widened(size * np.arange(-below, above + 1, dtype=float), size, box, growth)
 
 
 def widened(core: Array, size: float, box: float, growth: float) -> Array:
