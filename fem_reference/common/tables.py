@@ -16,7 +16,7 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
-from fem_reference.common.plasticity import History, Material
+from fem_reference.common.plasticity import History
 from fem_reference.common.recovery import plastic_fields
 from sam.scene import verdict
 from sam.scene.result import (
@@ -32,7 +32,6 @@ from sam.scene.result import (
     Table,
     residual_table,
 )
-from sam.scene.section import stated
 
 
 def columns(names: Sequence[str], values: Sequence[Any]) -> dict[str, Any]:
@@ -213,8 +212,9 @@ def six(field: Array) -> Array:
 
 def _yield_strain(model: ContactModel) -> Array:
     """Initial yield stress over Young's modulus at each Gauss point, (n,)."""
-    material: Material = stated(model.problem.material)
-    return model.scales.strain * material.yield_strain.ravel()
+    if model.problem.material is None:
+        raise ValueError("the body does not yield")
+    return model.scales.strain * model.problem.material.yield_strain.ravel()
 
 
 def verdicts_of(
