@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
 from samfem.refusals import Refusals
-from samfem.solving import check
+from samfem.solving import check, seconds
 from verification.compare.comparison import Tolerances, compare_data, compare_scene, tolerances_of
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, table_rows
@@ -248,8 +248,3 @@ def agreement(rows: Sequence[Verdict]) -> str:
     }
     closest = f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
     return f"{sum(row.passed for row in rows)} of {len(rows)} agree{closest}"
-
-
-def seconds(result: Result) -> float:
-    """Wall time of a result in s, of its own solve also where it is from the store."""
-    return sum(result.cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))

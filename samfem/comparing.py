@@ -15,9 +15,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from sam.scene import Problem, Result, SceneError, either, finer_cells, finer_mesh, read_scene
-from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked, seconds
+from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked
 from samfem.refusals import Refusals, check_folder
-from samfem.solving import unconverged, write_solved
+from samfem.solving import seconds, unconverged, write_solved
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
 from verification.judging import Verdict

@@ -163,9 +163,9 @@ def _in_parts(
     """A fresh result, with checkpoints in a folder; write: what an interruption may not leave half done;
     made: the plan, if there is one.
     """
-    seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
+    who = checkpoints.identity(scene, model)
     start = _start(scene, place, who) if resume else None
-    writer = checkpoints.Writer(place, who, seconds, start, warn=_say)
+    writer = checkpoints.Writer(place, who, checkpoints.interval(), start, warn=_say)
     with checkpoints.interruptible(writer):
         with Progress(remaining=True) as progress:
 
@@ -242,11 +242,14 @@ def unconverged(results: Sequence[Result | Run]) -> int:
     return 1 if ended or short else 0
 
 
+def seconds(result: Result | Run) -> float:
+    """Wall time of a result in s, of its own solve also where it is from the store."""
+    return sum(result.cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))
+
+
 def status_line(result: Result | Run) -> str:
     """Status, time and cells or elements, on one line."""
-    cost = result.cost
-    seconds = sum(cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))
-    return f"{result.status} in {with_time(seconds)}: {_cells(result.discretisation)}"
+    return f"{result.status} in {with_time(seconds(result))}: {_cells(result.discretisation)}"
 
 
 def load_line(result: Result | Run) -> str:
