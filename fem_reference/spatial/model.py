@@ -90,13 +90,16 @@ class Model(ContactModel):
         """The same with the counter-body at the place of a load."""
         return replace(self, place=(load.x, load.y))
 
+    def offsets(self, x: float, y: float) -> tuple[Array, Array]:
+        """(nx + 1, ny + 1) distances from a place along x and y; of a half none along y, as the other one has
+        the opposite sign.
+        """
+        along, across = np.meshgrid(self.lines.x - x, self.lines.y - y, indexing="ij")
+        return along, np.zeros_like(across) if self.lines.half else across
+
     def slope(self, load: Load, direction: Array) -> Array:
         """(nx + 1, ny + 1) slope of the gap along a direction, with the counter-body where a load has it."""
-        offsets = (line - at for line, at in zip((self.lines.x, self.lines.y), (load.x, load.y), strict=True))
-        x, y = np.meshgrid(*offsets, indexing="ij")
-        if self.lines.half:
-            y = np.zeros_like(y)  # the other half has the opposite sign
-        tx, ty = direction
+        (x, y), (tx, ty) = self.offsets(load.x, load.y), direction
         cx, cy = (self.scales.strain * curvature for curvature in self.plan.curvature)
         return tx * cx * x + ty * cy * y
 

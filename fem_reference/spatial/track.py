@@ -48,11 +48,7 @@ class Track(track.Track):
     def pressing(self, state: Equilibrium) -> tuple[Array, Array, Array, Array]:
         """Of the base; below a plane the distance is from the origin."""
         model, (tx, ty) = self.model, self.direction
-        about = (0.0, 0.0) if self.plane else (state.load.x, state.load.y)
-        offsets = (line - at for line, at in zip((model.lines.x, model.lines.y), about, strict=True))
-        x, y = np.meshgrid(*offsets, indexing="ij")
-        if model.lines.half:
-            y = np.zeros_like(y)  # the other half has the opposite sign
+        x, y = model.offsets(*((0.0, 0.0) if self.plane else (state.load.x, state.load.y)))
         slope = model.slope(state.load, self.direction)
         forces = model.on_surface(state.multipliers) / model.part
         return forces, slope, tx * model.ratio(state), tx * x + ty * y
