@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
 from samfem.refusals import Refusals
-from samfem.solving import check, seconds
+from samfem.solving import check, named, seconds
 from verification.compare.comparison import Tolerances, compare_data, compare_scene, tolerances_of
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, table_rows
@@ -185,10 +185,7 @@ class Question:
         sources = []
 
         def one(scene: Scene, label: str) -> Result:
-            def told(stage: str, done: int, total: int) -> None:
-                if progress:
-                    progress(f"{model}{', ' * bool(label)}{label}: {stage}", done, total)
-
+            told = named(progress, model, label) if progress else None
             result, source = solve_or_reuse(store, scene, model, told)
             sources.append(source)
             return result

@@ -14,7 +14,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any, cast
 
-from sam.scene import Checkpoint, Result, Scene, Status, read_scene
+from sam.scene import Checkpoint, Progress as Told, Result, Scene, Status, read_scene
 from verification.cost import plan as plans
 from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.cost.contact import hertz_of
@@ -137,7 +137,7 @@ def _solved(
             return found
         try:
             begun = (place / CHECKPOINT).exists()
-            result = _in_parts(each, model, place, label=f", {label}", resume=begun)
+            result = _in_parts(each, model, place, label=label, resume=begun)
         except KeyboardInterrupt as stop:
             text = str(stop) or f"interrupted: --resume continues with {label}"
             raise KeyboardInterrupt(text) from None
@@ -168,15 +168,16 @@ def _in_parts(
     writer = checkpoints.Writer(place, who, checkpoints.interval(), start, warn=_say)
     with checkpoints.interruptible(writer):
         with Progress(remaining=True) as progress:
-
-            def told(stage: str, done: int, total: int) -> None:
-                progress(f"{model}{label}: {stage}", done, total)
-
-            result, source = solve_or_reuse(
-                default_store(), scene, model, told, fresh=True, checkpoint=writer, start=start, made=made
-            )
+            told, how = named(progress, model, label), {"checkpoint": writer, "start": start, "made": made}
+            result, source = solve_or_reuse(default_store(), scene, model, told, fresh=True, **how)
         write(result, source)
     return result
+
+
+def named(progress: Told, model: str, label: str = "") -> Told:
+    """Progress of a solve by a model; label: of one of several solves."""
+    head = ", ".join(filter(None, (model, label)))
+    return lambda stage, done, total: progress(f"{head}: {stage}", done, total)
 
 
 def _say(text: str) -> None:
