@@ -60,15 +60,6 @@ class Limits:
     roof_falls: bool = False
 
 
-def limits_of(scene: Scene) -> Limits:
-    """The strain limits of a scene with [wear]."""
-    wear, plasticity = stated(scene.wear), stated(scene.body.plasticity)
-    falls = wear.roof == "falls"
-    if wear.strain_limit_layer is None or plasticity.layer_thickness is None:
-        return Limits(wear.strain_limit, wear.strain_limit, 0.0, falls)
-    return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness, falls)
-
-
 def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCycle]]:
     """The cycles of a rough scene with [wear], solved with removal at the end of each of them, for each of
     some ways to remove; the load of the first cycle, which they have in common, is solved once.
@@ -79,7 +70,10 @@ def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCy
     cannot represent, ValueError where a cycle does not converge, or all that the mesh has below a node is
     above the limit.
     """
-    limits = limits_of(scene)
+    wear, thickness = stated(scene.wear), stated(scene.body.plasticity).layer_thickness
+    layer = None if thickness is None else wear.strain_limit_layer
+    of_layer = (wear.strain_limit, 0.0) if layer is None else (layer, stated(thickness))
+    limits = Limits(wear.strain_limit, *of_layer, wear.roof == "falls")
     body = build(plan(scene.model_copy(update={"wear": None})))
     first: list[Step] = []
     found = []
