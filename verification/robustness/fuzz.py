@@ -23,7 +23,7 @@ import numpy as np
 
 from sam.scene import GridFields, Result, Status
 from verification.robustness import hostile
-from verification.robustness.hostile import EVERY_KEY, NUMBERS, PLACES, PLASTIC, ROUGH, SMALL, UNITS, VALUES
+from verification.robustness.hostile import NUMBERS, PLACES, PLASTIC, ROUGH, SMALL, UNITS, VALUES, WHOLE
 from verification.runs.archive import DIGEST, VALUES as VALUES_JSON, digest_of
 from verification.runs.meshes import READABLE, mesh_files
 
@@ -36,7 +36,6 @@ LINE = re.compile(r"(?m)^.*\n")
 CELL = re.compile(r"[^,;\s]+")
 TOKEN = re.compile(r'(?<=")[^"\n]*(?=")|\w+|"[^"\n]*"|\{.*\}')
 COUNT = re.compile(r"\b\d+\b")
-FORCE = re.compile(r"(?m)^force = .+$")
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ ODD = (
 
 def bad_input(seed: int, number: int) -> BadInput:
     """Input `number` of the series of `seed`; the kinds take turns."""
-    kind = tuple(KINDS)[number % len(KINDS)]
+    kind = TURNS[number % len(TURNS)]
     return BadInput(kind, *KINDS[kind](random.Random(f"{seed}/{number}")))
 
 
@@ -270,35 +269,24 @@ def _archive(rng: random.Random) -> Laid:
     arrays = {"a": np.arange(24.0).reshape(4, 6), "b": np.array(["x", "yy"])}
     arrays[VALUES_JSON] = np.frombuffer(json.dumps({"x": [1, None, "é"]}).encode(), dtype=np.uint8)
     arrays[DIGEST] = digest_of(arrays)
-    match rng.randrange(6):
-        case 0:
-            names = "sub", "pipe", "link-zero", "link-loop", "missing", "yield.csv", "x" * 5_000, "a\0b"
-            return AROUND, rng.choice(names)
-        case 1:
-            content = npz({VALUES_JSON: np.frombuffer(rng.choice(hostile.JSON), dtype=np.uint8)})
-        case _:
-            content = bad_npz(rng, arrays)
-    return {ARCHIVE: content}, ARCHIVE
+    odd = {VALUES_JSON: np.frombuffer(rng.choice(hostile.JSON), dtype=np.uint8)}
+    files = {**AROUND, ARCHIVE: npz(odd) if rng.random() < 0.2 else bad_npz(rng, arrays)}
+    return files, ARCHIVE if rng.random() < 0.8 else rng.choice(PLACES)
 
 
 def _run(rng: random.Random) -> Laid:
     """The folder of a run whose summary or tables are damaged, of another version, or no files."""
     summary, table = f"{RUN}/summary.json", f"{RUN}/history.csv"
     good = {"format": "samfem run 1", "status": "converged", "model": "sam", "scene": {}}
-    text = json.dumps(good | {"quantities": {"force_N": 1.0}}).encode()
-    files: dict[str, File] = {summary: text, table: b"cycle,step,force_N\n1,1,0.5\n1,2,1.0\n"}
-    match rng.randrange(5):
-        case 0:
-            files[summary] = mutated(rng, text)
-        case 1:
-            files[summary] = rng.choice(hostile.SUMMARIES)
-        case 2:
-            files[table] = rng.choice(hostile.HISTORIES)
-        case 3:
-            files[rng.choice((summary, table))] = rng.choice(ODD)
-        case _:
-            files[table] = bad_table(rng, files[table], hostile.CELLS)
-    return files, rng.choice((RUN,) * 8 + (table, "missing", "x" * 5_000))
+    text, history = json.dumps(good | {"quantities": {"force_N": 1.0}}).encode(), b"cycle,step\n1,1\n1,2\n"
+    odd = (
+        {summary: mutated(rng, text)},
+        {summary: rng.choice(hostile.JSON)},
+        {table: rng.choice(hostile.HISTORIES)},
+        {rng.choice((summary, table)): rng.choice(ODD)},
+        {table: bad_table(rng, history, hostile.CELLS)},
+    )
+    return {summary: text, table: history, **rng.choice(odd)}, rng.choice((RUN,) * 8 + (table, *PLACES[:2]))
 
 
 def with_mapping(text: str, files: dict[str, File]) -> Laid:
@@ -359,32 +347,17 @@ def good_meshes() -> dict[str, bytes]:
 
 
 def _surface(rng: random.Random) -> Laid:
-    """A rough scene: its path, the file that it names, what is done to that, or its generator changed."""
-    arrays, path, lines = _arrays(), HEIGHTS, ""
-    files = {TABLE: table(), HEIGHTS: good_heights()}
-    match rng.randrange(6):
-        case 0:
-            path = rng.choice((*PLACES, TABLE))
-        case 1 | 2:
-            files[HEIGHTS] = bad_npz(rng, arrays)
-        case 3:
-            path, files[TABLE] = TABLE, bad_table(rng, table(), (*hostile.CELLS, *hostile.HEADS))
-        case 4:
-            missing = rng.choice((0, 0, 0, 1, 30, 60, 61, 120))
-            arrays["height_m"].flat[rng.sample(range(120), missing)] = np.nan
-            files[HEIGHTS] = npz(arrays)
-            words = {key: rng.choice(values) for key, values in hostile.PROCESSING.items()}
-            lines = "".join(f"{key} = {word}\n" for key, word in words.items() if rng.random() < 0.5)
-            lines += rng.choice(("", "[grid]\ncells = [12, 10]\n", "[grid]\ncells = [4097, 3]\n"))
-        case _:
-            head, mark, keys = hostile.WAVES.partition("[surface]\n")
-            length = f'"{10 ** rng.uniform(-9, 3):.3g} um"'
-            keys = replaced(rng, keys, VALUE, lambda _: rng.choice((length, *hostile.GENERATED)), most=2)
-            if rng.random() < 0.3:
-                keys = replaced(rng, keys, LINE, lambda _: rng.choice(("", 'amplitude = "1 um"\n')), most=1)
-            return {SCENE: (head + mark + keys).encode()}, SCENE
-    text = ROUGH.replace(f"{toml_string(HEIGHTS)}\n", f"{toml_string(path)}\n{lines}")
-    return {**AROUND, "pickle.npz": with_pickle(), **files, SCENE: encoded(text)}, SCENE
+    """A rough scene with heights that are damaged, or with holes, and keys that say what is done to them."""
+    arrays, lines = _arrays(), ""
+    if rng.random() < 0.5:
+        content = bad_npz(rng, arrays)
+    else:
+        arrays["height_m"].flat[rng.sample(range(120), rng.choice((0, 0, 0, 1, 30, 60, 61, 120)))] = np.nan
+        content = npz(arrays)
+        words = {key: rng.choice(values) for key, values in hostile.PROCESSING.items()}
+        lines = "".join(f"{key} = {word}\n" for key, word in words.items() if rng.random() < 0.5)
+        lines += rng.choice(("", "[grid]\ncells = [12, 10]\n", "[grid]\ncells = [4097, 3]\n"))
+    return _scene(ROUGH + lines, {HEIGHTS: content})
 
 
 def _matrix(rng: random.Random) -> Laid:
@@ -404,10 +377,8 @@ def _matrix(rng: random.Random) -> Laid:
         values = _arrays()["height_m"].astype(rng.choice(kinds))  # an object is refused
         content = rng.choice((npy(values, objects=True), lying_header(rng)))
     right, some = hostile.MATRIX_KEYS[:2], rng.sample(hostile.MATRIX_KEYS, rng.randrange(3))
-    keys = rng.choice((right, some))
-    path = toml_string(f"heights{ending}") + "\n" + "\n".join(keys)
-    files = {f"heights{ending}": content, SCENE: ROUGH.replace(toml_string(HEIGHTS), path).encode()}
-    return {**AROUND, **files}, SCENE
+    text = ROUGH.replace(HEIGHTS, f"heights{ending}") + "\n".join(rng.choice((right, some)))
+    return _scene(text, {f"heights{ending}": content})
 
 
 def _arrays() -> dict[str, np.ndarray]:
@@ -442,10 +413,10 @@ def good_scenes() -> tuple[str, ...]:
     return (*(content.decode() for content in shipped(".toml").values()), *hostile.SCENES)
 
 
-def _scene(text: str | bytes, files: Mapping = {}) -> Laid:
-    """A scene with the files that good scenes name, or others in their place."""
+def _scene(text: str | bytes, files: Mapping[str, File] = {}) -> Laid:
+    """A scene with the files that good scenes name, or others in their place, and what lies around."""
     content = text if isinstance(text, bytes) else encoded(text)
-    around = {"yield.csv": hostile.YIELD, "depth.csv": hostile.DEPTH, HEIGHTS: good_heights()}
+    around = {**AROUND, HEIGHTS: good_heights(), "pickle.npz": with_pickle()}
     return {**around, **shipped(".csv"), **files, SCENE: content}, SCENE
 
 
@@ -456,37 +427,36 @@ def _number(rng: random.Random) -> str:
     return f"{rng.choice(('', '-'))}{rng.random() * 10 ** rng.uniform(-32, 32):.{rng.randrange(1, 17)}g}"
 
 
-def _value(rng: random.Random) -> str:
-    return rng.choice((rng.choice(VALUES), _number(rng), f'"{_number(rng)} {rng.choice(UNITS)}"'))
+def hostile_word(rng: random.Random, good: str) -> str:
+    """In place of a good value: one of its sort that is too much, or of any other sort."""
+    number = _number(rng)
+    words = [rng.choice(VALUES), number, f'"{number} {rng.choice(UNITS)}"']
+    if quantity := QUANTITY.search(good):
+        value, unit = quantity.groups()
+        words += [f'"{number} {unit}"', f'"{value} {rng.choice(UNITS)}"', f'" {value}  {unit} "']
+        words += [f'"{value}{unit}"', _extreme(rng, quantity)]
+    elif good.startswith('"'):
+        some = "".join(rng.choice(hostile.MARKUP) for _ in range(rng.randint(1, 3)))
+        words += [toml_string(each) for each in (rng.choice(PLACES), rng.choice(UNITS), some)]
+    if good.startswith("["):
+        many, sort = rng.choice((0, 1, 2, 2, 2, 3, 2_000)), rng.choice((WHOLE, hostile.LENGTHS))
+        words += [f"[{', '.join(rng.choices(sort, k=many))}]"] * 3
+    return rng.choice(words)
+
+
+def _extreme(rng: random.Random, quantity: re.Match) -> str:
+    """The quantity, of any size."""
+    return f'"{10 ** rng.uniform(-22, 20):.3g} {quantity[2]}"'
 
 
 def _values(rng: random.Random) -> Laid:
-    """Values replaced: other types, other numbers, what is no TOML."""
-    return _scene(replaced(rng, rng.choice(good_scenes()), VALUE, lambda _: _value(rng)))
-
-
-def _units(rng: random.Random) -> Laid:
-    """Quantities with another number or unit, right dimensions included."""
-
-    def other(match: re.Match) -> str:
-        number, unit = match.groups()
-        changed = f"{_number(rng)} {unit}", f"{number} {rng.choice(UNITS)}"
-        return rng.choice((*changed, f"{number}{unit}", f" {number}  {unit} "))
-
-    return _scene(replaced(rng, rng.choice(good_scenes()), QUANTITY, other))
-
-
-def _extremes(rng: random.Random) -> Laid:
-    """Good values of every size that the format allows, together."""
-
-    def extreme(match: re.Match) -> str:
-        return f"{10 ** rng.uniform(-22, 20):.3g} {match[2]}" if rng.random() < 0.6 else match[0]
-
-    text = QUANTITY.sub(extreme, rng.choice([text for text in good_scenes() if text is not EVERY_KEY]))
-    for key, words in (("poisson", ("0", "0.5", "0.4999999", "1e-300")), ("tolerance", ("1e-14", "0.1"))):
-        if rng.random() < 0.3:
-            text = re.sub(f"{key} = .*", f"{key} = {rng.choice(words)}", text)
-    return _scene(text)
+    """Values of another type, unit or size; or many quantities of every size together."""
+    text = rng.choice(good_scenes())
+    if rng.random() < 0.2:
+        return _scene(
+            QUANTITY.sub(lambda found: _extreme(rng, found)[1:-1] if rng.random() < 0.6 else found[0], text)
+        )
+    return _scene(replaced(rng, text, VALUE, lambda found: hostile_word(rng, found[0])))
 
 
 def _keys(rng: random.Random) -> Laid:
@@ -522,71 +492,25 @@ def _bytes(rng: random.Random) -> Laid:
     return _scene(mutated(rng, text.encode()))
 
 
-def _sizes(rng: random.Random) -> Laid:
-    """Grids, meshes and step counts of every size, and depths in any order."""
-    whole, few = hostile.WHOLE, (1, 2, 2, 2, 2, 3)
-
-    def lengths(counts: tuple[int, ...]) -> str:
-        return json.dumps(rng.choices(hostile.LENGTHS, k=rng.choice(counts)))
-
-    keys = {
-        "cells": f"[{', '.join(rng.choices(whole, k=rng.choice(few)))}]",
-        "extent": lengths(few),
-        "depths": lengths((0, 1, 2, 3, 5, 2_000)),
-        "layers": rng.choice(whole),
-        "depth": f'"{rng.choice(hostile.LENGTHS)}"',
-    }
-    rows = (f"{key} = {value}\n" for key, value in keys.items() if rng.random() < 0.5)
-    text = re.sub(r"(?ms)^\[(grid|fem)\].*?(?=^\[|\Z)", "", rng.choice(good_scenes()))
-    if rng.random() < 0.4:
-        text = re.sub(r"(steps|cycles) = \d+", lambda match: f"{match[1]} = {rng.choice(whole)}", text)
-    fem = f"[fem]\ncells_per_radius = {rng.choice(whole)}\nbox = {_number(rng)}\n"
-    return _scene("\n".join([text, "[grid]", *rows, fem * (rng.random() < 0.4)]))
-
-
-def _paths(rng: random.Random) -> Laid:
-    """A table of the scene elsewhere, behind a link, in a pipe or device, or of an impossible name."""
-    place, key = rng.choice(PLACES), rng.choice(("file", "profile"))
-    text = PLASTIC.replace('file = "yield.csv"', f"{key} = {toml_string(place)}")
-    return _scene(text, {**AROUND, "pickle.npz": with_pickle()})
-
-
 def _tables(rng: random.Random) -> Laid:
-    """Yield tables with other columns, quotes, separators, numbers, lengths and encodings."""
-    return _scene(PLASTIC, {"yield.csv": bad_table(rng, hostile.YIELD, hostile.CELLS)})
-
-
-def _titles(rng: random.Random) -> Laid:
-    """A good scene with markup, escapes and control characters in its title."""
-    title = json.dumps("".join(rng.choice(hostile.MARKUP) for _ in range(rng.randint(1, 3))))
-    return _scene(SMALL.replace('"Small"', title.replace("\\ud83d\\ude00", "\\U0001f600")))
+    """Tables with other columns, quotes, separators, numbers, lengths and encodings."""
+    if rng.random() < 0.5:
+        return _scene(PLASTIC, {"yield.csv": bad_table(rng, hostile.YIELD, hostile.CELLS)})
+    heights = bad_table(rng, table(), (*hostile.CELLS, *hostile.HEADS))
+    return _scene(ROUGH.replace(HEIGHTS, TABLE), {TABLE: heights})
 
 
 def _places(rng: random.Random) -> Laid:
     """A scene that is no file, is not there, or has an odd name."""
     if rng.random() < 0.5:
-        places = "sub|pipe|link-out|link-loop|link-zero|/dev/zero|/dev/full|missing.toml|yield.csv/x.toml"
-        return AROUND, rng.choice((*places.split("|"), "x" * 5_000))
+        return AROUND, rng.choice(PLACES)
     name = rng.choice(hostile.NAMES)
     return {**AROUND, name: rng.choice(good_scenes()).encode()}, name
-
-
-def _approach(rng: random.Random) -> Laid:
-    """An approach in place of the force, or beside it: of every size, and what is no length."""
-    text = rng.choice([text for text in good_scenes() if FORCE.search(text)])
-    drawn = f'"{10 ** rng.uniform(-22, 20):.3g} m"', _value(rng)
-    value = rng.choice((rng.choice(hostile.APPROACHES), *drawn))
-    kept = r"\g<0>\n" if rng.random() < 0.1 else ""
-    return _scene(FORCE.sub(lambda match: match.expand(kept) + f"approach = {value}", text))
 
 
 def _mapping(rng: random.Random) -> Laid:
     """The mapping of a good mesh, as it is or with other values, paths, lines and bytes."""
     text = hostile.MAPPING
-
-    def odd(_: re.Match) -> str:
-        words = rng.choice((*hostile.MARKUP, *UNITS, *PLACES))
-        return rng.choice((rng.choice(VALUES), _number(rng), toml_string(words)))
 
     match rng.randrange(4):
         case 0:
@@ -599,16 +523,15 @@ def _mapping(rng: random.Random) -> Laid:
                 rng, text, LINE, lambda match: rng.choice((*others, match[0] * 2, f"x{match[0]}"))
             )
         case _ if rng.random() < 0.6:
-            text = replaced(rng, text, VALUE, odd)
+            text = replaced(rng, text, VALUE, lambda found: hostile_word(rng, found[0]))
     return with_mapping(text, good_meshes())
 
 
 def _study(rng: random.Random) -> Laid:
     """A study with other values, keys, modes and bytes, of a scene that is good, bad or not there."""
 
-    def odd(_: re.Match) -> str:
-        words = rng.choice(hostile.OF_STUDIES), rng.choice(VALUES), toml_string(rng.choice(PLACES))
-        return rng.choice((*words, _number(rng)))
+    def odd(found: re.Match) -> str:
+        return rng.choice((rng.choice(hostile.OF_STUDIES), hostile_word(rng, found[0])))
 
     text = hostile.STUDY if rng.random() < 0.2 else replaced(rng, hostile.STUDY, TOKEN, odd)
     made = mutated(rng, encoded(text)) if rng.random() < 0.1 else encoded(text)
@@ -618,22 +541,18 @@ def _study(rng: random.Random) -> Laid:
 
 KINDS: dict[str, Generator] = {
     "values": _values,
-    "units": _units,
-    "extremes": _extremes,
     "keys": _keys,
     "bytes": _bytes,
-    "sizes": _sizes,
-    "paths": _paths,
     "surfaces": _surface,
     "tables": _tables,
-    "titles": _titles,
     "places": _places,
     ARCHIVE: _archive,
     RUN: _run,
-    "approaches": _approach,
     MESHES: _mesh,
     MAPPINGS: _mapping,
     "matrices": _matrix,
     STUDIES: _study,
 }
 """Name of a kind -> its generator."""
+TURNS = (*KINDS, *["values"] * 5)
+"""The values of a scene are most of what can be wrong."""
