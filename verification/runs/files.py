@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from shutil import rmtree
-from typing import TYPE_CHECKING, Any, Required, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from sam.scene import (
     resolved,
 )
 from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, not_written, read_mesh
-from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
+from verification.runs.model_range import OUTSIDE, outside_of_model
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
 
@@ -65,20 +65,9 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
-class Uncertainty(TypedDict, total=False):
-    """What is known of the numerical error of a quantity, in its unit; see `docs/guide/accuracy.md`."""
-
-    u_num: Required[float | None]
-    flag: Required[str]
-    relative: float | None
-    u_cells: float
-    u_steps: float
-    u_box: float
-    order_seen: float | None
-    values: list[float]
-    cells: list[float]
-    values_of_steps: list[float]
-    steps: list[float]
+def _said(name: str) -> Any:
+    """A property of a run: what its summary.json says, None where an older one says nothing."""
+    return property(lambda run: run.summary.get(name))
 
 
 @dataclass(frozen=True)
@@ -89,54 +78,17 @@ class Run:
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
+    model, status, message = map(_said, ("model", "status", "message"))
+    cost, discretisation, verdict = map(_said, ("cost", "discretisation", "verdict"))
+    uncertainty, model_range, warnings = map(_said, ("uncertainty", "model_range", "warnings"))
+
     @property
     def quantities(self) -> Mapping[str, float | None]:
         return dict.fromkeys(QUANTITIES) | self.summary["quantities"]  # older runs have fewer
 
     @property
-    def model(self) -> str:
-        return self.summary["model"]
-
-    @property
-    def status(self) -> str:
-        return self.summary["status"]
-
-    @property
-    def message(self) -> str:
-        return self.summary["message"]
-
-    @property
-    def warnings(self) -> list[str]:
-        return list(self.summary["warnings"])
-
-    @property
-    def cost(self) -> Mapping[str, float | int | None]:
-        return self.summary["cost"]
-
-    @property
-    def discretisation(self) -> Mapping[str, Any]:
-        return self.summary["discretisation"]
-
-    @property
-    def verdict(self) -> Mapping[str, Any] | None:
-        return self.summary.get("verdict")
-
-    @property
-    def uncertainty(self) -> Mapping[str, Uncertainty] | None:
-        return self.summary.get("uncertainty")
-
-    @property
-    def model_range(self) -> Mapping[str, Any] | None:
-        return self.summary.get("model_range")
-
-    @property
     def last_fitting(self) -> Mapping[str, float | None]:
         return self.summary.get("last_fitting") or {}
-
-    @property
-    def range_lines(self) -> list[str]:
-        """What is said about it, see `verification.runs.model_range`."""
-        return [] if self.model_range is None else range_lines(self.model_range)
 
     @property
     def scene(self) -> Scene:
