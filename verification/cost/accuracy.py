@@ -31,6 +31,7 @@ from verification.cost.advice import (
 from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
+from verification.scenes import with_keys
 from verification.text.readable import with_prefix, with_time
 from verification.uncertainty.rule import STEP_FACTOR, bound
 from verification.uncertainty.solving import (
@@ -43,7 +44,6 @@ from verification.uncertainty.solving import (
     alone,
     assessed,
     cell_size,
-    changed,
     coarser,
     cost_of,
     depths_of_maxima,
@@ -123,22 +123,22 @@ def expected(scene: Scene, model: str) -> Choice:
 def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
     """The scene with these cells and load steps, asked for its uncertainty."""
     scene = alone(scene)
-    found = changed(scene, "solver", uncertainty=True)
+    found = with_keys(scene, "solver", uncertainty=True)
     if model == models.SAM:
         grid = sam.choose_grid(scene)
         a, b = sam.hertz_semi_axes(scene)
         factor = (sqrt(a * b / (grid.hx * grid.hy)) if grid.ny > 1 else a / grid.hx) / choice.cells
         more = (min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
         cells = tuple(n if count > 1 else 1 for n, count in zip(more, grid.shape, strict=True))
-        found = changed(found, "grid", cells=cells)
+        found = with_keys(found, "grid", cells=cells)
     else:
-        found = changed(found, "fem", cells_per_radius=ceil(choice.cells))
+        found = with_keys(found, "fem", cells_per_radius=ceil(choice.cells))
     if not choice.steps:
         return found
     steps, loading = {"steps": choice.steps}, scene.loading
     if loading.unload_steps:
         steps["unload_steps"] = min(ceil(loading.unload_steps * choice.steps / loading.steps), MOST_STEPS)
-    return changed(found, "loading", **steps)
+    return with_keys(found, "loading", **steps)
 
 
 def _resolution(kind: str, method: str, error: float, power: float) -> float | None:
@@ -388,7 +388,7 @@ class Search:
             count = scene.fem.cells_per_radius
             return Member(scene, f"{count} elements in the radius", count, 1 / count)
         if depths is not None:
-            scene = in_one_step(changed(scene, "grid", depths=tuple(depths)))
+            scene = in_one_step(with_keys(scene, "grid", depths=tuple(depths)))
         grid = sam.plan(scene).on(room or Room()).grid
         return Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
 

@@ -13,10 +13,11 @@ import numpy as np
 
 import sam
 from sam.grid import CellGrid, Room
-from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, Status, spelling
+from sam.scene import COLUMNS, Problem, Result, Scene, SceneError, Status, spelling
 from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.tables import contact_size
+from verification.scenes import with_keys
 from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
@@ -171,13 +172,7 @@ class NoFamilyError(ValueError):
 
 def alone(scene: Scene) -> Scene:
     """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
-    return changed(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
-
-
-def changed(scene: Scene, section: str, **keys: Any) -> Scene:
-    """The scene with keys of a section changed."""
-    given = getattr(scene, section) or Grid()  # which alone a scene may lack
-    return scene.model_copy(update={section: given.model_copy(update=keys)})
+    return with_keys(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
 
 
 def family(
@@ -274,7 +269,7 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
         ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
         of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
         return [
-            Member(changed(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
+            Member(with_keys(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
             for each, n in of
         ]
     grid = sam.plan(scene).on(room).grid
@@ -286,7 +281,7 @@ def in_one_step(scene: Scene) -> Scene:
     """The same load of an elastic body at once; a way is gone as it is."""
     if scene.strokes.count:
         return scene
-    return changed(scene, "loading", steps=1, unload_steps=None)
+    return with_keys(scene, "loading", steps=1, unload_steps=None)
 
 
 def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
@@ -301,7 +296,7 @@ def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float
     elif depths is not None:
         change |= {"depths": tuple(depths), "layers": None, "depth": None}
     size = sides[0] / nx if ny == 1 else sqrt(sides[0] * sides[1] / (nx * ny))
-    return Member(changed(scene, "grid", **change), f"{nx} cells", nx, size)
+    return Member(with_keys(scene, "grid", **change), f"{nx} cells", nx, size)
 
 
 def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
@@ -328,7 +323,7 @@ def wider(member: Member) -> Member:
         last = faces[-1] - faces[-2]
         deeper = np.append(faces, np.arange(faces[-1], WIDER * faces[-1], last) + last)
         change |= {"depths": tuple(map(float, deeper)), "layers": None, "depth": None}
-    scene = changed(member.scene, "grid", **change)
+    scene = with_keys(member.scene, "grid", **change)
     return replace(member, scene=scene, label=f"{member.label} and more beside them")
 
 
@@ -346,7 +341,7 @@ def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
         if along:
             own = {"steps": _share(along, share), "step_per_radius": None}
             change["path"] = loading.path.model_copy(update=own)
-        scene = changed(coarsest.scene, "loading", **change)
+        scene = with_keys(coarsest.scene, "loading", **change)
         members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
     return tuple(members)
 
@@ -362,7 +357,7 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
         return ()
     words = f"radii on {coarsest.label}"
     return tuple(
-        Member(changed(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
+        Member(with_keys(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
         for size in (box, box / RATIO)
     )
 
@@ -378,7 +373,7 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
 
 def asked_of(scene: Scene, source: str) -> Scene:
     """The scene, asked for its uncertainty. SceneError where there is none; source: names it in errors."""
-    asked = changed(scene, "solver", uncertainty=True)
+    asked = with_keys(scene, "solver", uncertainty=True)
     solver = asked.solver
     own = ((f"solver.{key}", words) for key, words in solver.conflicts(solver.model_dump(exclude_none=True)))
     if found := [*own, *asked.excesses()]:
