@@ -14,10 +14,9 @@ import re
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib import resources
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -25,7 +24,7 @@ from sam.scene import GridFields, Result, Status
 from verification.robustness import hostile
 from verification.robustness.hostile import NUMBERS, PLACES, PLASTIC, ROUGH, SMALL, UNITS, VALUES, WHOLE
 from verification.runs.archive import DIGEST, VALUES as VALUES_JSON, digest_of
-from verification.runs.meshes import READABLE, mesh_files
+from verification.runs.meshes import READABLE, as_pyvista, mesh_files
 
 SCENE, MAPPING, HEIGHTS, TABLE = "scene.toml", "own.toml", "heights.npz", "heights.csv"
 ARCHIVE, RUN, MESHES, MAPPINGS, STUDIES = "archive", "run", "meshes", "mappings", "studies"
@@ -38,15 +37,8 @@ TOKEN = re.compile(r'(?<=")[^"\n]*(?=")|\w+|"[^"\n]*"|\{.*\}')
 COUNT = re.compile(r"\b\d+\b")
 
 
-@dataclass(frozen=True)
-class Special:
-    """What is no ordinary file: a named pipe, a folder, or a link to `target`."""
-
-    what: Literal["pipe", "folder", "link"]
-    target: str = ""
-
-
-File = bytes | Special
+File = bytes | str
+"""The content of a file, or what is no ordinary one: "pipe", "folder", or the target of a link."""
 
 
 @dataclass(frozen=True)
@@ -64,21 +56,15 @@ Generator = Callable[[random.Random], Laid]
 AROUND: Mapping[str, File] = {
     "yield.csv": hostile.YIELD,
     "depth.csv": hostile.DEPTH,
-    "sub": Special("folder"),
-    "pipe": Special("pipe"),
-    "link-out": Special("link", "/etc/passwd"),
-    "link-loop": Special("link", "link-loop"),
-    "link-in": Special("link", "yield.csv"),
-    "link-zero": Special("link", "/dev/zero"),
+    "sub": "folder",
+    "pipe": "pipe",
+    "link-out": "/etc/passwd",
+    "link-loop": "link-loop",
+    "link-in": "yield.csv",
+    "link-zero": "/dev/zero",
 }
 """What lies in the folder of a scene whose paths are attacked."""
-
-
-ODD = (
-    Special("pipe"),
-    Special("folder"),
-    *(Special("link", target) for target in ("/dev/zero", "/etc/passwd", "nowhere")),
-)
+ODD = ("pipe", "folder", "/dev/zero", "/etc/passwd", "nowhere")
 """In place of a file."""
 
 
@@ -95,10 +81,10 @@ def lay(bad: BadInput, folder: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         if isinstance(content, bytes):
             path.write_bytes(content)
-        elif content.what == "folder":
+        elif content == "folder":
             path.mkdir()
-        elif content.what == "link":
-            path.symlink_to(content.target)
+        elif content != "pipe":
+            path.symlink_to(content)
         elif hasattr(os, "mkfifo"):
             os.mkfifo(path)
     return folder / bad.name
@@ -144,16 +130,13 @@ def encoded(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
 
 
-def npz(members: Mapping[str, np.ndarray | bytes], values: Mapping | None = None) -> bytes:
-    """An npz file of arrays, or of members whose bytes are given, and of values as an archive holds them."""
+def npz(members: Mapping[str, np.ndarray | bytes], packing: int = zipfile.ZIP_STORED) -> bytes:
+    """An npz file of arrays, or of members whose bytes are given."""
     stream = io.BytesIO()
-    if values is not None:
-        members = {**members, "values.json": np.frombuffer(json.dumps(values).encode(), dtype=np.uint8)}
     with zipfile.ZipFile(stream, "w") as target:
         for name, content in members.items():
-            if not isinstance(content, bytes):
-                content = npy(content)
-            target.writestr(zipfile.ZipInfo(f"{name}.npy"), content)
+            member = content if isinstance(content, bytes) else npy(content)
+            target.writestr(zipfile.ZipInfo(f"{name}.npy"), member, packing)
     return stream.getvalue()
 
 
@@ -183,20 +166,16 @@ class Trap:
 def with_pickle() -> bytes:
     """An npz file with an array of objects whose unpickling makes a folder in the current one."""
     trap = npy(np.array([Trap()], dtype=object), objects=True)
-    return npz({"x_m": trap, "y_m": np.zeros(3), "height_m": np.zeros((3, 3))}, {})
+    return npz({"x_m": trap, "y_m": np.zeros(3), "height_m": np.zeros((3, 3))})
 
 
 @cache
 def bomb(shape: tuple[int, ...]) -> bytes:
     """An npz file of a few kB whose heights, said to have that shape, unpack to BOMB_BYTES."""
-    stream, members = io.BytesIO(), {name: npy(array) for name, array in _arrays().items()}
     member = io.BytesIO()
     np.lib.format.write_array_header_1_0(member, {"descr": "<f8", "fortran_order": False, "shape": shape})
-    members["height_m"] = member.getvalue() + bytes(BOMB_BYTES)
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as target:
-        for name, content in members.items():
-            target.writestr(zipfile.ZipInfo(f"{name}.npy"), content, zipfile.ZIP_DEFLATED)
-    return stream.getvalue()
+    heights = member.getvalue() + bytes(BOMB_BYTES)
+    return npz({**_arrays(), "height_m": heights}, zipfile.ZIP_DEFLATED)
 
 
 def bad_npz(rng: random.Random, arrays: Mapping[str, np.ndarray]) -> bytes:
@@ -289,9 +268,9 @@ def _run(rng: random.Random) -> Laid:
     return {summary: text, table: history, **rng.choice(odd)}, rng.choice((RUN,) * 8 + (table, *PLACES[:2]))
 
 
-def with_mapping(text: str, files: dict[str, File]) -> Laid:
+def with_mapping(text: bytes, files: Mapping[str, File]) -> Laid:
     """A mapping beside a scene and files."""
-    return {**AROUND, SCENE: SMALL.encode(), MAPPING: encoded(text), **files}, MAPPING
+    return {**AROUND, SCENE: SMALL.encode(), MAPPING: text, **files}, MAPPING
 
 
 def _mesh(rng: random.Random) -> Laid:
@@ -321,29 +300,27 @@ def _mesh(rng: random.Random) -> Laid:
         case _:
             name = f"own{rng.choice(READABLE)}"  # the ending of another format
     text = hostile.MAPPING.replace('"own.vtu"', toml_string(name))
-    return with_mapping(text, {**good_meshes(), name: content})
+    return with_mapping(encoded(text), {**good_meshes(), name: content})
 
 
 @cache
 def good_meshes() -> dict[str, bytes]:
     """A plane below the contact of SMALL, in three formats."""
+    from vtkmodules.vtkIOLegacy import vtkDataSetWriter
+
     x, z = np.linspace(-6e-5, 6e-5, 25), np.linspace(0.0, 6e-5, 13)
     p = np.where(z == 0.0, 1.0, 0.0) * np.sqrt(np.maximum(1.0 - (x[:, None] / 1.5e-5) ** 2, 0.0)) * 1e9
     moved = 1e-16 * np.stack([p[:, None]] * 3)
     fields = {"p_Pa": p[:, None], "mises_Pa": 0.5 * p[:, None], "displacement_m": moved}
     plane = GridFields(x, np.zeros(1), z, fields, {})
     grids = {"peak": {"plane": plane, "surface": plane}}
-    points = np.stack([each.ravel() for each in np.meshgrid(x, 0.0, -z, indexing="ij")], axis=-1)
-    n = len(points)
-    rows = "\n".join(" ".join(map(repr, row)) for row in points.tolist())
-    cells, values = "\n".join(f"1 {k}" for k in range(n)), "\n".join(map(repr, p.ravel().tolist()))
-    legacy = (
-        f"# vtk DataFile Version 3.0\nplane\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} double\n{rows}\n"
-    )
-    legacy += f"CELLS {n} {2 * n}\n{cells}\nCELL_TYPES {n}\n" + "1\n" * n
-    legacy += f"POINT_DATA {n}\nSCALARS p_Pa double 1\nLOOKUP_TABLE default\n{values}\n"
+    legacy = vtkDataSetWriter()
+    legacy.SetInputData(as_pyvista(plane))
+    legacy.WriteToOutputStringOn()
+    legacy.Write()
+    text = legacy.GetOutputString().encode()
     made = mesh_files(Result("sam", Status.CONVERGED, {}, {}, grids=grids), 1)
-    return {"own.vtu": made["fields.vtu"], "own.vtr": made["surface.vtr"], "own.vtk": legacy.encode()}
+    return {"own.vtu": made["fields.vtu"], "own.vtr": made["surface.vtr"], "own.vtk": text}
 
 
 def _surface(rng: random.Random) -> Laid:
@@ -449,17 +426,18 @@ def _extreme(rng: random.Random, quantity: re.Match) -> str:
     return f'"{10 ** rng.uniform(-22, 20):.3g} {quantity[2]}"'
 
 
-def _values(rng: random.Random) -> Laid:
+def odd_values(rng: random.Random, text: str) -> bytes:
     """Values of another type, unit or size; or many quantities of every size together."""
-    text = rng.choice(good_scenes())
+
+    def extreme(found: re.Match) -> str:
+        return _extreme(rng, found)[1:-1] if rng.random() < 0.6 else found[0]
+
     if rng.random() < 0.2:
-        return _scene(
-            QUANTITY.sub(lambda found: _extreme(rng, found)[1:-1] if rng.random() < 0.6 else found[0], text)
-        )
-    return _scene(replaced(rng, text, VALUE, lambda found: hostile_word(rng, found[0])))
+        return encoded(QUANTITY.sub(extreme, text))
+    return encoded(replaced(rng, text, VALUE, lambda found: hostile_word(rng, found[0])))
 
 
-def _keys(rng: random.Random) -> Laid:
+def odd_lines(rng: random.Random, text: str) -> bytes:
     """Keys and tables that are unknown, misspelt, twice, missing, in another table, or nested deep."""
     deep = rng.choice((50, 1_000, 20_000))
     dotted, opened = ".".join("b" * deep), "[" * deep
@@ -468,28 +446,37 @@ def _keys(rng: random.Random) -> Laid:
     tables = f"[{dotted}]", f"[[{dotted}]]", "[[body]]", "[loading]", "[body]"
 
     def other(match: re.Match) -> str:
-        line, cut = match[0], rng.randrange(len(match[0]))
-        swapped = line[:cut] + line[cut : cut + 2][::-1] + line[cut + 2 :]
+        line, at = match[0], rng.randrange(len(match[0]))
+        swapped = line[:at] + line[at : at + 2][::-1] + line[at + 2 :]
         many = "".join(f"key{k} = {k}\n" for k in range(rng.choice((10, 2_000))))
         more = f"{rng.choice(names)} = 1\n", f"x = {brackets}\n", f"{rng.choice(tables)}\n", many
         return rng.choice(("", line * 2, swapped, rng.choice(more) + line))
 
-    text = replaced(rng, rng.choice(good_scenes()), LINE, other)
+    text = replaced(rng, text, LINE, other)
     lines = text.splitlines(keepends=True)
-    return _scene("".join(rng.sample(lines, len(lines))) if rng.random() < 0.1 else text)
+    return encoded("".join(rng.sample(lines, len(lines))) if rng.random() < 0.1 else text)
 
 
-def _bytes(rng: random.Random) -> Laid:
-    """A scene cut short, with bits flipped or bytes put in, in another encoding, with very long lines."""
-    text = rng.choice(good_scenes()).replace("steel", "stähl", 1)
+def odd_bytes(rng: random.Random, text: str) -> bytes:
+    """A text cut short, with bits flipped or bytes put in, in another encoding, with very long lines."""
+    text = text.replace("steel", "stähl", 1)
     match rng.randrange(5):
         case 0:
             codecs = "utf-16", "utf-16-le", "utf-32", "latin-1", "cp1252", "utf-8-sig", "utf-7", "cp037"
-            return _scene(text.encode(rng.choice(codecs), "replace"))
+            return text.encode(rng.choice(codecs), "replace")
         case 1:
             ends = "\r\n", "\r", "\x0b", "\x00\n", "\u2028", "#" * 100_000 + "\n"
-            return _scene(text.replace("\n", rng.choice(ends)))
-    return _scene(mutated(rng, text.encode()))
+            return text.replace("\n", rng.choice(ends)).encode()
+    return mutated(rng, text.encode())
+
+
+def odd_text(rng: random.Random, text: str) -> bytes:
+    """A text as it is, or wrong in one of these ways."""
+    return rng.choice((odd_values, odd_lines, odd_bytes, lambda _, good: encoded(good)))(rng, text)
+
+
+def _of_scene(change: Callable[[random.Random, str], bytes], rng: random.Random) -> Laid:
+    return _scene(change(rng, rng.choice(good_scenes())))
 
 
 def _tables(rng: random.Random) -> Laid:
@@ -510,39 +497,23 @@ def _places(rng: random.Random) -> Laid:
 
 def _mapping(rng: random.Random) -> Laid:
     """The mapping of a good mesh, as it is or with other values, paths, lines and bytes."""
-    text = hostile.MAPPING
-
-    match rng.randrange(4):
-        case 0:
-            text = text.replace('"own.vtu"', toml_string(rng.choice(PLACES)))
-        case 1:
-            text = mutated(rng, text.encode()).decode(errors="surrogateescape")
-        case 2:
-            others = "", "stress = ['p_Pa', 'x']\n"
-            text = replaced(
-                rng, text, LINE, lambda match: rng.choice((*others, match[0] * 2, f"x{match[0]}"))
-            )
-        case _ if rng.random() < 0.6:
-            text = replaced(rng, text, VALUE, lambda found: hostile_word(rng, found[0]))
-    return with_mapping(text, good_meshes())
+    return with_mapping(odd_text(rng, hostile.MAPPING), good_meshes())
 
 
 def _study(rng: random.Random) -> Laid:
-    """A study with other values, keys, modes and bytes, of a scene that is good, bad or not there."""
-
-    def odd(found: re.Match) -> str:
-        return rng.choice((rng.choice(hostile.OF_STUDIES), hostile_word(rng, found[0])))
-
-    text = hostile.STUDY if rng.random() < 0.2 else replaced(rng, hostile.STUDY, TOKEN, odd)
-    made = mutated(rng, encoded(text)) if rng.random() < 0.1 else encoded(text)
-    scene = rng.choice((SMALL, SMALL, SMALL, rng.choice(good_scenes()))).encode()
-    return {**AROUND, HEIGHTS: good_heights(), SCENE: scene, "study.toml": made}, "study.toml"
+    """A study with other words, values, lines and bytes, of a scene that is good, bad or not there."""
+    text = hostile.STUDY
+    if rng.random() < 0.5:
+        text = replaced(rng, text, TOKEN, lambda _: rng.choice(hostile.OF_STUDIES))
+    scene, name = rng.choice((SMALL, SMALL, SMALL, rng.choice(good_scenes()))), "study.toml"
+    files, _ = _scene(scene)
+    return {**files, name: odd_text(rng, text)}, name
 
 
 KINDS: dict[str, Generator] = {
-    "values": _values,
-    "keys": _keys,
-    "bytes": _bytes,
+    "values": partial(_of_scene, odd_values),
+    "keys": partial(_of_scene, odd_lines),
+    "bytes": partial(_of_scene, odd_bytes),
     "surfaces": _surface,
     "tables": _tables,
     "places": _places,
