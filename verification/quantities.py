@@ -420,7 +420,8 @@ def _both_refined(words: str, unit: str) -> Quantity:
     """A value of a track, both models refined."""
 
     def whole(solved: Solved) -> Measured:
-        return Measured(*(float(refined(runs, OF_TRACKS[words])) for runs in ladders(solved)), unit=unit)
+        sam, fem = (float(refined(runs, OF_TRACKS[words])) for runs in ladders(solved))
+        return Measured(sam, fem, unit=unit)
 
     return Quantity(f"{words}, both models refined", unit, whole=whole)
 

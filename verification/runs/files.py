@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from shutil import rmtree
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar
 
 import numpy as np
 
@@ -37,13 +37,14 @@ from sam.scene import (
     resolved,
 )
 from verification.runs.meshes import STEPS, is_mesh, mesh_files, mesh_names, not_written, read_mesh
-from verification.runs.model_range import OUTSIDE, outside_of_model
+from verification.runs.model_range import OUTSIDE, outside_of_model, range_lines
 from verification.runs.provenance import collect
 from verification.runs.tables import columns_text, frame_of, read_table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+T = TypeVar("T")
 SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
 COMPANION = "compare.json"
@@ -65,9 +66,31 @@ class FolderError(ValueError):
     """A folder that is no result, or that must not be written to; the message says which and what to do."""
 
 
-def _said(name: str) -> Any:
-    """A property of a run: what its summary.json says, None where an older one says nothing."""
-    return property(lambda run: run.summary.get(name))
+class Uncertainty(TypedDict, total=False):
+    """What is known of the numerical error of a quantity, in its unit; see `docs/guide/accuracy.md`."""
+
+    u_num: Required[float | None]
+    flag: Required[str]
+    relative: float | None
+    u_cells: float
+    u_steps: float
+    u_box: float
+    order_seen: float | None
+    values: list[float]
+    cells: list[float]
+    values_of_steps: list[float]
+    steps: list[float]
+
+
+class _Said(Generic[T]):
+    """What summary.json says under the name of this attribute; None where an older one says nothing."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, run: Any, owner: type) -> T:
+        found: Any = self if run is None else run.summary.get(self.name)
+        return found
 
 
 @dataclass(frozen=True)
@@ -78,9 +101,15 @@ class Run:
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
-    model, status, message = map(_said, ("model", "status", "message"))
-    cost, discretisation, verdict = map(_said, ("cost", "discretisation", "verdict"))
-    uncertainty, model_range, warnings = map(_said, ("uncertainty", "model_range", "warnings"))
+    model = _Said[str]()
+    status = _Said[str]()
+    message = _Said[str]()
+    warnings = _Said[list[str]]()
+    cost = _Said[Mapping[str, float | int | None]]()
+    discretisation = _Said[Mapping[str, Any]]()
+    verdict = _Said[Mapping[str, Any] | None]()
+    uncertainty = _Said[Mapping[str, Uncertainty] | None]()
+    model_range = _Said[Mapping[str, Any] | None]()
 
     @property
     def quantities(self) -> Mapping[str, float | None]:
@@ -89,6 +118,11 @@ class Run:
     @property
     def last_fitting(self) -> Mapping[str, float | None]:
         return self.summary.get("last_fitting") or {}
+
+    @property
+    def range_lines(self) -> list[str]:
+        """What is said about it, see `verification.runs.model_range`."""
+        return [] if self.model_range is None else range_lines(self.model_range)
 
     @property
     def scene(self) -> Scene:
