@@ -162,8 +162,7 @@ def _parser() -> argparse.ArgumentParser:
 
     _of_scenes(command)
     _of_the_suite(command)
-    _of_runs(command)
-    _of_beginners(command).set_defaults(parser=made)
+    _of_runs(command).set_defaults(parser=made)
     return made
 
 
@@ -295,7 +294,10 @@ def _of_the_suite(command: Command) -> None:
     add("--single-file", **ON, help=SINGLE)
 
 
-def _of_runs(command: Command) -> None:
+def _of_runs(command: Command) -> argparse.ArgumentParser:
+    """And of scenes to begin with. The parser of completion is returned: it prints what completes the whole
+    command line.
+    """
     add = command("export", "write a mesh of a run for other programs").add_argument
     add("folder", **RUN)
     what = "of Abaqus and CalculiX (the mesh alone), of Gmsh, or XDMF"
@@ -318,16 +320,6 @@ def _of_runs(command: Command) -> None:
     add("--prune", nargs="?", const="unusable", choices=("unusable", "all"), help=what)
     add("--older-than", metavar="DAYS", type=_days, help="with --prune: also remove what is older")
 
-
-def _days(text: str) -> float:
-    days = float(text)
-    if not 0 <= days < float("inf"):
-        raise ValueError(text)
-    return days
-
-
-def _of_beginners(command: Command) -> argparse.ArgumentParser:
-    """The parser of completion is returned: it prints what completes the whole command line."""
     add = command("new", "write a commented scene that runs").add_argument
     kinds = f"{', '.join(STARTS)}; default: {STARTS[0]}"
     add("kind", metavar="KIND", nargs="?", choices=STARTS, default=STARTS[0], help=kinds)
@@ -343,6 +335,13 @@ def _of_beginners(command: Command) -> argparse.ArgumentParser:
     completion = command("completion", "print the completion of this command line for a shell")
     completion.add_argument("shell", choices=SHELLS)
     return completion
+
+
+def _days(text: str) -> float:
+    days = float(text)
+    if not 0 <= days < float("inf"):
+        raise ValueError(text)
+    return days
 
 
 def _workers(text: str) -> int:

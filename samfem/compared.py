@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from sam.scene import Problem, Progress, Result, Scene, SceneError, spelling
 from samfem.refusals import Refusals
-from samfem.solving import check
+from samfem.solving import check, named, seconds
 from verification.compare.comparison import Tolerances, compare_data, compare_scene, tolerances_of
 from verification.compare.own_data import OwnData, read_data
 from verification.compare.rows import COLUMNS, table_rows
@@ -185,10 +185,7 @@ class Question:
         sources = []
 
         def one(scene: Scene, label: str) -> Result:
-            def told(stage: str, done: int, total: int) -> None:
-                if progress:
-                    progress(f"{model}{', ' * bool(label)}{label}: {stage}", done, total)
-
+            told = named(progress, model, label) if progress else None
             result, source = solve_or_reuse(store, scene, model, told)
             sources.append(source)
             return result
@@ -248,8 +245,3 @@ def agreement(rows: Sequence[Verdict]) -> str:
     }
     closest = f", closest {used[max(used)]} at {100 * max(used):.0f} % of its tolerance" if used else ""
     return f"{sum(row.passed for row in rows)} of {len(rows)} agree{closest}"
-
-
-def seconds(result: Result) -> float:
-    """Wall time of a result in s, of its own solve also where it is from the store."""
-    return sum(result.cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))

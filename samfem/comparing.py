@@ -14,10 +14,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from sam.scene import Problem, Result, Scene, SceneError, either, finer_cells, finer_mesh, read_scene
-from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked, seconds
+from sam.scene import Problem, Result, SceneError, either, finer_cells, finer_mesh, read_scene
+from samfem.compared import NOT_COMPARED, Compared, Question, agreement, asked
 from samfem.refusals import Refusals, check_folder
-from samfem.solving import unconverged, write_solved
+from samfem.solving import seconds, unconverged, write_solved
 from verification.compare.verdicts import CLAIM, NOT_JUDGED
 from verification.figures import compare_figures
 from verification.judging import Verdict
@@ -26,7 +26,6 @@ from verification.runs.files import (
     COMPANION,
     FIGURES,
     FolderError,
-    Run,
     check_target,
     clear_run,
     figures_of,
@@ -75,7 +74,7 @@ def compare(paths: Sequence[Path], **options: Any) -> int:
         _show_all(jobs, found)
     _write_pages(jobs, found, given)
     print(found[0].line if len(jobs) == 1 else _verdict(jobs, found))
-    return max(_judge(each.scene, each.results, each.rows, each.off) for each in found)
+    return max(map(_judge, found))
 
 
 def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
@@ -96,7 +95,14 @@ def _jobs(paths: Sequence[Path], given: SimpleNamespace) -> list[Job]:
         words = f"{', '.join(twice)}: scenes of one name would be written to one folder"
         refusals.found.append(FolderError(words))
     with refusals.kept():
-        _check_pages(given)
+        if given.report is not None:
+            from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
+
+            check_report(given.report)
+        if given.junit is not None:
+            above = given.junit.absolute().parent
+            if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
+                raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
     refusals.raise_any()
     return jobs
 
@@ -113,18 +119,6 @@ def _job(path: Path, folder: Path, given: SimpleNamespace) -> Job:
             check_target(folder / part)
     refusals.raise_any()
     return Job(path.stem, question, folder, inputs)
-
-
-def _check_pages(given: SimpleNamespace) -> None:
-    """Raise FolderError where a page or a JUnit file cannot be written."""
-    if given.report is not None:
-        from samfem.comparison_page import check_report  # noqa: PLC0415 - loads the suite
-
-        check_report(given.report)
-    if given.junit is not None:
-        above = given.junit.absolute().parent
-        if given.junit.is_dir() or not above.is_dir() or not os.access(above, os.W_OK):
-            raise FolderError(f"--junit {given.junit}: a file in a folder that can be written to")
 
 
 def _shown(folder: Path) -> list[Any]:
@@ -249,18 +243,16 @@ def _beside(row: Verdict | None) -> str:
     return NOT_COMPARED if row is None else f"{digits(row.error, 3)} {_ended(row)}"
 
 
-def _judge(
-    scene: Scene,
-    results: Sequence[Result | Run],
-    rows: Sequence[Verdict],
-    off: Sequence[tuple[str, Verdict]] = (),
-) -> int:
-    """Exit code; what did not hold, and what to change, on stderr. off: rows of data that did not hold."""
-    code, broken = unconverged(results), [row for row in rows if not row.passed]
-    claimed = [row.quantity for row in broken if row.row.metric == CLAIM]
-    failed = [row.quantity for row in broken if row.row.metric != CLAIM]
+def _judge(found: Compared) -> int:
+    """Exit code; what did not hold, and what to change, on stderr."""
+    code, scene, off = unconverged(found.results), found.scene, found.off
+    claimed = [row.quantity for row in found.failed if row.row.metric == CLAIM]
+    failed = [row.quantity for row in found.failed if row.row.metric != CLAIM]
     if failed and not code:  # else there is something to change first
-        finer = f"to see whether the meshes are too coarse, {_finer(scene)}, and compare again"
+        layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
+        mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # rough: both have the same cells
+        advice = either(finer_cells(scene), layers, mesh) or "lower grid.extent"
+        finer = f"to see whether the meshes are too coarse, {advice}, and compare again"
         print(f"samfem: outside the tolerance: {', '.join(failed)}: {finer}", file=sys.stderr)
     if claimed:
         print(f"samfem: the film is not negligible: {', '.join(claimed)}", file=sys.stderr)
@@ -268,10 +260,3 @@ def _judge(
         quantities = ", ".join(row.quantity for other, row in off if other == name)
         print(f"samfem: {name} is outside the tolerance: {quantities}", file=sys.stderr)
     return 1 if code or failed or claimed or off else 0
-
-
-def _finer(scene: Scene) -> str:
-    """What to refine of both models."""
-    layers = "raise the number of layers in grid" if scene.body.plasticity is not None else ""
-    mesh = finer_mesh(scene) if scene.patch_surface is None else ""  # of a rough one both have the same cells
-    return either(finer_cells(scene), layers, mesh) or "lower grid.extent"

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from samfem.compared import Compared, seconds
-from samfem.solving import status_line
+from samfem.compared import Compared
+from samfem.solving import seconds, status_line
 from verification.compare.rows import metric_of
 from verification.figures import compare_figures
 from verification.judging import RowStatus

@@ -299,7 +299,8 @@ def solve(
     SceneError, ModelError, FolderError
         For a wrong file, a scene that the model cannot represent, a folder that holds something else.
     """
-    from verification.cost.accuracy import solve as solve_family  # noqa: PLC0415 - loads the solvers
+    from samfem.solving import named  # noqa: PLC0415 - loads the solvers
+    from verification.cost.accuracy import solve as solve_family  # noqa: PLC0415 - likewise
     from verification.runs.store import kept_coefficients  # noqa: PLC0415 - only where it solves
 
     scene = _scene(scene)
@@ -310,10 +311,7 @@ def solve(
     with followed(progress) as told, kept_coefficients():
 
         def one(each: Scene, label: str) -> Result:
-            def of_stage(stage: str, done: int, total: int) -> None:
-                told(f"{model}{', ' * bool(label)}{label}: {stage}", done, total)
-
-            return models.solve(each, model, of_stage)
+            return models.solve(each, model, named(told, model, label))
 
         run = _run_of(solve_family(scene, model, one), scene)
     run = run if out is None else run.save(out)

@@ -14,7 +14,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any, cast
 
-from sam.scene import Checkpoint, Result, Scene, Status, read_scene
+from sam.scene import Checkpoint, Progress as Told, Result, Scene, Status, read_scene
 from verification.cost import plan as plans
 from verification.cost.accuracy import chosen_scene, first_choice, missed, solve as solve_family
 from verification.cost.contact import hertz_of
@@ -78,32 +78,20 @@ def solve(
     made = check(scene, model, anyway=anyway or resume)
     check_target(folder)
     with locked(folder), kept_coefficients():
-        return _solve(scene, model, folder, inputs, made=made, figures=figures, resume=resume)
-
-
-def _solve(
-    scene: Scene,
-    model: str,
-    folder: Path,
-    inputs: dict[str, bytes],
-    *,
-    made: Any,
-    figures: bool,
-    resume: bool,
-) -> int:
-    if resume and checkpoints.is_finished(folder, scene, model):
-        result: Result | Run = read_run(folder)
-        print(f"samfem: {folder} is already finished: nothing is solved", file=sys.stderr)
-    else:
-        drawn = figures_of(folder)
-        result = _solved(scene, model, folder, inputs, made=made, resume=resume)
-        if drawn and not figures and not figures_of(folder):
-            _say(f"the figures in {folder} were of another result and are removed: --figures draws new ones")
-    print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
-    print(folder / "summary.json")
-    if figures:
-        _draw(folder)
-    return unconverged([result])
+        if resume and checkpoints.is_finished(folder, scene, model):
+            result: Result | Run = read_run(folder)
+            _say(f"{folder} is already finished: nothing is solved")
+        else:
+            drawn = figures_of(folder)
+            result = _solved(scene, model, folder, inputs, made=made, resume=resume)
+            if drawn and not figures and not figures_of(folder):
+                removed = "were of another result and are removed: --figures draws new ones"
+                _say(f"the figures in {folder} {removed}")
+        print(*result_lines(result, scene, readable=sys.stdout.isatty()), sep="\n")
+        print(folder / "summary.json")
+        if figures:
+            _draw(folder)
+        return unconverged([result])
 
 
 def _draw(folder: Path) -> None:
@@ -149,7 +137,7 @@ def _solved(
             return found
         try:
             begun = (place / CHECKPOINT).exists()
-            result = _in_parts(each, model, place, label=f", {label}", resume=begun)
+            result = _in_parts(each, model, place, label=label, resume=begun)
         except KeyboardInterrupt as stop:
             text = str(stop) or f"interrupted: --resume continues with {label}"
             raise KeyboardInterrupt(text) from None
@@ -175,20 +163,21 @@ def _in_parts(
     """A fresh result, with checkpoints in a folder; write: what an interruption may not leave half done;
     made: the plan, if there is one.
     """
-    seconds, who = checkpoints.interval(), checkpoints.identity(scene, model)
+    who = checkpoints.identity(scene, model)
     start = _start(scene, place, who) if resume else None
-    writer = checkpoints.Writer(place, who, seconds, start, warn=_say)
+    writer = checkpoints.Writer(place, who, checkpoints.interval(), start, warn=_say)
     with checkpoints.interruptible(writer):
         with Progress(remaining=True) as progress:
-
-            def told(stage: str, done: int, total: int) -> None:
-                progress(f"{model}{label}: {stage}", done, total)
-
-            result, source = solve_or_reuse(
-                default_store(), scene, model, told, fresh=True, checkpoint=writer, start=start, made=made
-            )
+            told, how = named(progress, model, label), {"checkpoint": writer, "start": start, "made": made}
+            result, source = solve_or_reuse(default_store(), scene, model, told, fresh=True, **how)
         write(result, source)
     return result
+
+
+def named(progress: Told, model: str, label: str = "") -> Told:
+    """Progress of a solve by a model; label: of one of several solves."""
+    head = ", ".join(filter(None, (model, label)))
+    return lambda stage, done, total: progress(f"{head}: {stage}", done, total)
 
 
 def _say(text: str) -> None:
@@ -254,11 +243,14 @@ def unconverged(results: Sequence[Result | Run]) -> int:
     return 1 if ended or short else 0
 
 
+def seconds(result: Result | Run) -> float:
+    """Wall time of a result in s, of its own solve also where it is from the store."""
+    return sum(result.cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))
+
+
 def status_line(result: Result | Run) -> str:
     """Status, time and cells or elements, on one line."""
-    cost = result.cost
-    seconds = sum(cost.get(name) or 0.0 for name in ("setup_s", "solve_s"))
-    return f"{result.status} in {with_time(seconds)}: {_cells(result.discretisation)}"
+    return f"{result.status} in {with_time(seconds(result))}: {_cells(result.discretisation)}"
 
 
 def load_line(result: Result | Run) -> str:

@@ -32,7 +32,6 @@ KINDS = {
     "running-in": "load cycles on a rough surface with a chemical film and wear",
 }
 """Kinds of scene that `samfem new` writes."""
-_STARTS = files("verification").joinpath("scenes", "starts")
 SCENES = files("verification").joinpath("scenes")
 
 
@@ -42,7 +41,7 @@ def new(kind: str, out: Path | None) -> int:
     Raises FolderError where one of the files is there already.
     """
     target = out or Path(f"{kind}.toml")
-    _copy(_STARTS.joinpath(f"{kind}.toml"), target)
+    _copy(SCENES.joinpath("starts", f"{kind}.toml"), target)
     print(f"{target}: {KINDS[kind]}")
     advice = {"plan": "what it will compute", "solve": "solves it"}
     try:

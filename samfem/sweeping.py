@@ -299,8 +299,14 @@ def _fill(state: Sweep, workers: Processes | Cluster, anyway: bool, progress: To
     progress("sweep", 0, len(tasks))
     for done, (index, outcome, repeats) in enumerate(run(workers, solve_scene, tasks), start=1):
         state.repeats = repeats
-        for each in same[index]:
-            _take(state, points[each], outcome)
+        for point in (points[each] for each in same[index]):
+            if isinstance(outcome, Failure):
+                state.add_without(point, FAILED, outcome.reason)
+                continue
+            result, origin = outcome
+            if state.store is not None:
+                state.store.keep(_scene_of(point), result.model, result)
+            state.add(point, result, Reuse(False), origin)
         state.write()
         progress("sweep", done, len(tasks))
 
@@ -328,16 +334,6 @@ def _scene_of(point: StudyPoint) -> Scene:
     """Of a point that is not refused."""
     assert point.scene is not None
     return point.scene
-
-
-def _take(state: Sweep, point: StudyPoint, outcome: Solved | Failure) -> None:
-    if isinstance(outcome, Failure):
-        state.add_without(point, FAILED, outcome.reason)
-        return
-    result, origin = outcome
-    if state.store is not None:
-        state.store.keep(_scene_of(point), result.model, result)
-    state.add(point, result, Reuse(False), origin)
 
 
 def solve_scene(scene: Scene, model: str, code: str, anyway: bool = False) -> Solved | Failure:

@@ -215,7 +215,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "rounded_lines": "lines of a rounded edge",
         "hexahedra.block": lambda a: "half block" if a["lines"].half else "whole block",
         "Solid.__init__": lambda a: "coated solid" if a["coating"] else "solid",
-        "ContactProblem.__init__": lambda a: "two bodies" if len(a["blocks"]) > 1 else "one body",
+        "ContactProblem.__init__": lambda a: "two bodies" if len(a["solids"]) > 1 else "one body",
         "J2.update": "return map",
         "KinematicJ2.returned": "return map with back-stresses",
         "History.virgin": "plastic history",

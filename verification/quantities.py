@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -168,27 +169,19 @@ def _pressure_over_rings(scene: Scene, sam: Result, fem: Result) -> Measured:
     return Measured(cells, means_of_line(r, p, edges), np.diff(edges**2))
 
 
-def _largest_strain(below: bool) -> Callable[[Scene, Result, Result], Measured]:
+def _largest_strain(scene: Scene, *results: Result, below: bool) -> Measured:
     """The largest plastic strain of cells or Gauss points in y = 0, in the layer or below it."""
-
-    def between(scene: Scene, *results: Result) -> Measured:
-        thickness = scene.body.plasticity.layer_thickness
-        pairs = [peak(each.tables["plane"], "z_m", "peeq") for each in results]
-        return Measured(*(float(peeq[(z >= thickness) == below].max()) for z, peeq in pairs))
-
-    return between
+    thickness = scene.body.plasticity.layer_thickness
+    pairs = [peak(each.tables["plane"], "z_m", "peeq") for each in results]
+    return Measured(*(float(peeq[(z >= thickness) == below].max()) for z, peeq in pairs))
 
 
-def _of_second_cycle(of: Callable[..., float | Measured]) -> Callable[[Result, Reference], float | Measured]:
-    """of: (plastic strain at the first peak, in the end, approach at the first peak, at the second)."""
-
-    def found(result: Result, reference: Reference) -> float | Measured:
-        names = ("cycle", "force_N", "approach_m", "peeq_max")
-        cycle, force, approach, peeq = (np.asarray(result.tables["history"][name]) for name in names)
-        first, second = (np.flatnonzero(cycle == k)[np.argmax(force[cycle == k])] for k in (1, 2))
-        return of(float(peeq[first]), float(peeq[-1]), float(approach[first]), float(approach[second]))
-
-    return found
+def _of_two_cycles(result: Result) -> tuple[float, float, float, float]:
+    """Plastic strain at the first peak and in the end, approach at the first peak and at the second."""
+    names = ("cycle", "force_N", "approach_m", "peeq_max")
+    cycle, force, approach, peeq = (np.asarray(result.tables["history"][name]) for name in names)
+    first, second = (np.flatnonzero(cycle == k)[np.argmax(force[cycle == k])] for k in (1, 2))
+    return float(peeq[first]), float(peeq[-1]), float(approach[first]), float(approach[second])
 
 
 def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
@@ -206,14 +199,11 @@ def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
     return Measured(*nodal_pressures(sam, fem))
 
 
-def _of_spot(number: int, of: Callable[[Scene, Result, Result, Spot], Measured]) -> Callable:
-    """A quantity of one of the contact spots, which are counted along x; nan where there are fewer."""
-
-    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
-        found = spots(sam.tables, fem.tables)[number - 1 : number]
-        return of(scene, sam, fem, *found) if found else Measured(np.nan, np.nan)
-
-    return between
+def _of_spot(scene: Scene, sam: Result, fem: Result, *, number: int, load: bool) -> Measured:
+    """The load of a contact spot, counted along x, or the strain below it; nan where there are fewer."""
+    for spot in spots(sam.tables, fem.tables)[number - 1 : number]:
+        return Measured(spot.sam, spot.fem, unit="N") if load else strain_below(scene, sam, fem, spot)[1]
+    return Measured(np.nan, np.nan)
 
 
 def strain_below(scene: Scene, sam: Result, fem: Result, spot: Spot) -> tuple[np.ndarray, Measured]:
@@ -263,15 +253,11 @@ def _centroid(scene: Scene, sam: Result, fem: Result) -> Measured:
     return Measured(first, second, unit="a")
 
 
-def _largest(of: Callable[[Scene, Result, Result], Measured]) -> Callable:
+def _largest(*results: Any, of: Callable[..., Measured]) -> Measured:
     """The largest value of a field of both models."""
-
-    def between(scene: Scene, sam: Result, fem: Result) -> Measured:
-        found = of(scene, sam, fem)
-        first, second = (float(np.max(np.asarray(each))) for each in (found.value, found.expected))
-        return Measured(first, second, unit="Pa")
-
-    return between
+    found = of(*results)
+    first, second = (float(np.max(np.asarray(each))) for each in (found.value, found.expected))
+    return Measured(first, second, unit="Pa")
 
 
 def _at_interface(result: Result, reference: Reference) -> Values:
@@ -298,50 +284,37 @@ def planes(solved: Solved) -> dict[str, Plane]:
     return {name: Plane.of(each.tables, solved.reference.units["a"]) for name, each in solved.results.items()}
 
 
-def _profile(column: bool, words: str) -> Quantity:
-    """The plastic strain over depth, on the axis or in the column where that of FEM is largest."""
-
-    def whole(solved: Solved) -> float:
-        both = planes(solved)
-        x = both["fem"].place_of_maximum() if column else 0.0
-        return measures.profile_difference(both["sam"], both["fem"], x)
-
-    return Quantity(f"{words}, largest relative difference", whole=whole)
+def _column_of(solved: Solved, column: bool) -> tuple[dict[str, Plane], float]:
+    """The planes of all runs, and x of the axis or of the column where the strain of FEM is largest."""
+    both = planes(solved)
+    return both, both["fem"].place_of_maximum() if column else 0.0
 
 
-def _limit(column: bool, words: str) -> Quantity:
+def _profile(solved: Solved, *, column: bool) -> float:
+    both, x = _column_of(solved, column)
+    return measures.profile_difference(both["sam"], both["fem"], x)
+
+
+def _limit(solved: Solved, *, column: bool) -> float:
     """The same of the limits of both models."""
-
-    def whole(solved: Solved) -> float:
-        a, fem = solved.reference.units["a"], planes(solved)["fem"]
-        x = fem.place_of_maximum() if column else 0.0
-        z = measures.depths_compared(fem, x)
-        one, other = (measures.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
-        return float(np.abs(one / other - 1.0).max())
-
-    return Quantity(f"{words} without cells and load steps, largest relative difference", whole=whole)
+    (both, x), a = _column_of(solved, column), solved.reference.units["a"]
+    z = measures.depths_compared(both["fem"], x)
+    one, other = (measures.limit_of_strain(solved.results, m, a=a, x=x, z=z) for m in ("sam", "fem"))
+    return float(np.abs(one / other - 1.0).max())
 
 
-def _contour(percent: float, extent: str) -> Quantity:
+def _contour(solved: Solved, *, percent: float, extent: str) -> Measured:
     """Depth or length of the part of y = 0 beyond a plastic strain, from the first depth of both on."""
-
-    def whole(solved: Solved) -> Measured:
-        both = [planes(solved)[name] for name in ("sam", "fem")]
-        top = max(plane.z[0] for plane in both)
-        sam, fem = (measures.contour(plane, percent / 100, top) for plane in both)
-        return Measured(sam and getattr(sam, extent), fem and getattr(fem, extent), unit="a")
-
-    return Quantity(f"{extent} of the part of y = 0 beyond {percent:g} % of plastic strain", "a", whole=whole)
+    both = [planes(solved)[name] for name in ("sam", "fem")]
+    top = max(plane.z[0] for plane in both)
+    sam, fem = (measures.contour(plane, percent / 100, top) for plane in both)
+    return Measured(sam and getattr(sam, extent), fem and getattr(fem, extent), unit="a")
 
 
-def _decoupled(distance: Callable[[Result, Result, float], float]) -> Callable[[Solved], float]:
+def _decoupled(solved: Solved, *, distance: Callable[[Result, Result, float], float]) -> float:
     """Pressure of the decoupled form off FEM over that of the coupled one."""
-
-    def whole(solved: Solved) -> float:
-        runs, a = solved.results, solved.reference.units["a"]
-        return distance(runs["decoupled"], runs["fem"], a) / distance(runs["sam"], runs["fem"], a)
-
-    return whole
+    runs, a = solved.results, solved.reference.units["a"]
+    return distance(runs["decoupled"], runs["fem"], a) / distance(runs["sam"], runs["fem"], a)
 
 
 def _stress(words: str, inside: Callable, of_tensor: Callable = np.asarray, part: Any = np.s_[:]) -> Quantity:
@@ -360,26 +333,33 @@ def _growth(lead: str) -> Callable[[Solved], float]:
     return lambda solved: measures.growth(*(r for n, r in solved.results.items() if n.startswith(lead)))
 
 
-_ON_AXIS = "plastic strain at z >= 0.3 a on the axis"
-_IN_COLUMN = "plastic strain at z >= 0.3 a at the x of the largest"
 _settles, _grows = _growth("below"), _growth("above")
+_LARGEST = "largest relative difference"
 SLIDING: Mapping[str, Quantity] = {
-    "axis": _profile(False, _ON_AXIS),
-    "column": _profile(True, _IN_COLUMN),
-    "limit-axis": _limit(False, _ON_AXIS),
-    "limit-column": _limit(True, _IN_COLUMN),
     **{
-        f"contour-{percent:g}-{extent}".replace(".", "-"): _contour(percent, extent)
+        f"{lead}{name}": Quantity(f"{words}{without}, {_LARGEST}", whole=partial(of, column=name == "column"))
+        for name, words in (
+            ("axis", "plastic strain at z >= 0.3 a on the axis"),
+            ("column", "plastic strain at z >= 0.3 a at the x of the largest"),
+        )
+        for lead, of, without in (("", _profile, ""), ("limit-", _limit, " without cells and load steps"))
+    },
+    **{
+        f"contour-{percent:g}-{extent}".replace(".", "-"): Quantity(
+            f"{extent} of the part of y = 0 beyond {percent:g} % of plastic strain",
+            "a",
+            whole=partial(_contour, percent=percent, extent=extent),
+        )
         for percent in (0.2, 2.0)
         for extent in ("depth", "length")
     },
     "decoupled": Quantity(
         "deviation of the pressure from FEM (L2 at nodes), normal displacement by shear neglected over kept",
-        whole=_decoupled(lambda sam, fem, a: relative_l2(*nodal_pressures(sam, fem))),
+        whole=partial(_decoupled, distance=lambda sam, fem, _: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
         "deviation of the pressure from FEM (over 0.2 a), normal displacement by shear neglected over kept",
-        whole=_decoupled(lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
+        whole=partial(_decoupled, distance=lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
     **{
         name: _stress(f"{name} at interior points", measures.stresses_inside, part=np.s_[:, k])
@@ -529,15 +509,19 @@ QUANTITIES: Mapping[str, Quantity] = {
     "residual-axis": Quantity("residual von Mises stress on the axis", row="residual mises_Pa on the axis"),
     "residual-mises": _scalar("residual_mises_max_Pa", "largest residual von Mises stress", "Pa"),
     "pressure-rings": Quantity("mean pressure over rings of a/10", "Pa", between=_pressure_over_rings),
-    "strain-layer": Quantity("largest plastic strain in the layer", between=_largest_strain(below=False)),
-    "strain-below": Quantity("largest plastic strain below the layer", between=_largest_strain(below=True)),
+    "strain-layer": Quantity(
+        "largest plastic strain in the layer", between=partial(_largest_strain, below=False)
+    ),
+    "strain-below": Quantity(
+        "largest plastic strain below the layer", between=partial(_largest_strain, below=True)
+    ),
     "peeq-reloaded": Quantity(
         "largest plastic strain after the second load, against the first",
-        of=_of_second_cycle(lambda first, last, *_: Measured(last, first)),
+        of=lambda result, _: Measured(*_of_two_cycles(result)[1::-1]),
     ),
     "approach-reloaded": Quantity(
         "change of the approach at the peak by the second cycle",
-        of=_of_second_cycle(lambda *values: abs(values[3] / values[2] - 1.0)),
+        of=lambda result, _: abs((values := _of_two_cycles(result))[3] / values[2] - 1.0),
     ),
     "applications": Quantity(
         "applications of the residual-stress operator by SAM",
@@ -553,7 +537,7 @@ QUANTITIES: Mapping[str, Quantity] = {
         "mises_max_change", "change of the largest von Mises stress of the body by the film"
     ),
     "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
-    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=_largest(_patch)),
+    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=partial(_largest, of=_patch)),
     "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
     "mises-below-film": Quantity(
         "von Mises stress of the body in y = 0, at the interface and the centres of the elements",
@@ -562,7 +546,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "mises-below-film-max": Quantity(
         "largest von Mises stress of the body in y = 0, same points in both models",
         "Pa",
-        between=_largest(_below_film),
+        between=partial(_largest, of=_below_film),
     ),
     "area": _scalar("contact_area_m2", "contact area", "m²"),
     "share": _scalar("contact_share", "share of the patch in contact"),
@@ -584,14 +568,14 @@ QUANTITIES: Mapping[str, Quantity] = {
         f"load-{k}": Quantity(
             f"load of spot {k}",
             "N",
-            between=_of_spot(k, lambda *of: Measured(of[-1].sam, of[-1].fem, unit="N")),
+            between=partial(_of_spot, number=k, load=True),
         )
         for k in (1, 2, 3)
     },
     **{
         f"strain-{k}": Quantity(
             f"plastic strain below spot {k} at z >= 0.3 radii, down to a tenth of the largest",
-            between=_of_spot(k, lambda *of: strain_below(*of)[1]),
+            between=partial(_of_spot, number=k, load=False),
         )
         for k in (1, 2, 3)
     },

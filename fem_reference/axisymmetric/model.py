@@ -13,9 +13,10 @@ import numpy as np
 
 from fem_reference.axisymmetric.misfit import MisfitSphere
 from fem_reference.axisymmetric.planner import AxisymmetricPlan
-from fem_reference.axisymmetric.problem import Block, ContactProblem
+from fem_reference.axisymmetric.problem import ContactProblem
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import Solid
 from fem_reference.common.hertz import hertz_pressure
 from fem_reference.common.model import HERTZ_GROWTH, PLASTIC_GROWTH, ContactModel, material
 from fem_reference.common.plasticity import History
@@ -45,24 +46,25 @@ class Model(ContactModel):
         return self.problem.gap0.size
 
     @property
-    def body(self) -> AxisymmetricSolid:
+    def body(self) -> Solid:
         """The half-space of the scene."""
-        return self.problem.blocks[0].solid
+        return self.problem.solids[0]
 
     @property
     def radii(self) -> Array:
         """(n_candidates,) radii of the nodes that may touch."""
         return self.surface[: self.candidates]
 
-    def initial_gap(self, r: Array) -> Array:
-        """The gap of the unloaded bodies at radii."""
-        return self.plan.gap(r)
+    @property
+    def initial_gap(self) -> Array:
+        """(n_surface,) gap of the unloaded bodies."""
+        return self.plan.gap(self.surface)
 
     def nodal_pressure(self, state: Equilibrium) -> Array:
         """(n_surface,) multiplier over the area of the node; on the axis of `axis_pressure`."""
         if self.misfit is not None:
             return np.zeros(self.surface.size)
-        if self.prescribed:
+        if self.plan.prescribed:
             return state.force * hertz_pressure(self.surface)
         area = surface_weights(self.surface)
         p = np.zeros(self.surface.size)
@@ -72,7 +74,7 @@ class Model(ContactModel):
 
     def contact_radius(self, state: Equilibrium) -> float:
         """Contact radius: of a punch that of the last node in contact, else of `edge_radius`."""
-        if self.prescribed:
+        if self.plan.prescribed:
             return 1.0 if state.force and self.misfit is None else 0.0
         if not state.active.any():
             return 0.0
@@ -140,28 +142,27 @@ def build(plan: AxisymmetricPlan) -> Model:
     """Mesh, bodies, material and contact candidates of a plan."""
     mesh, bodies = tensor_mesh(plan.r, plan.z, half=True), plan.bodies
     # both bodies use one mesh, each in its own coordinates, so that their surface nodes match
-    blocks = [
-        Block(AxisymmetricSolid(mesh, elastic, coating=coating), elastic)
+    solids = [
+        AxisymmetricSolid(mesh, elastic, coating=coating)
         for elastic, coating in zip(bodies.elastic, (bodies.coating, None), strict=False)
     ]
-    solid = blocks[0].solid
+    solid = solids[0]
     surface = solid.basis.doflocs[0, solid.boundary_dofs("surface", 1)]
     # the node of the outer boundary has a prescribed displacement
     candidates = int(np.searchsorted(surface, 1.0, side="right")) if plan.punch else surface.size - 1
     gap0 = plan.gap(surface[:candidates])
     if plan.misfit is not None:
-        return with_misfit(plan, plan.misfit, blocks[0], gap0)
+        return with_misfit(plan, plan.misfit, solid, gap0)
     tractions: Array | float = 0.0
     if plan.prescribed:
         tractions = np.zeros(solid.size)
         tractions[solid.boundary_dofs("surface", 1)] = hertz_forces(surface)
-    problem = ContactProblem(blocks, gap0, material(bodies, plan.scales, solid), tractions)
+    problem = ContactProblem(solids, gap0, material(bodies, plan.scales, solid), tractions)
     return Model(plan, problem, surface)
 
 
-def with_misfit(plan: AxisymmetricPlan, sphere: MisfitSphere, block: Block, gap0: Array) -> Model:
+def with_misfit(plan: AxisymmetricPlan, sphere: MisfitSphere, solid: AxisymmetricSolid, gap0: Array) -> Model:
     """The model of a body with a misfit sphere, whose elastic fields hold the outer boundary."""
-    solid = block.solid
     forces, far, places = np.zeros(solid.size), np.zeros(solid.size), solid.basis.doflocs
     on_surface = [solid.boundary_dofs("surface", component) for component in (0, 1)]
     surface = places[0, on_surface[1]]
@@ -170,7 +171,7 @@ def with_misfit(plan: AxisymmetricPlan, sphere: MisfitSphere, block: Block, gap0
         outer = solid.boundary_dofs("far", component)
         far[outer] = sphere.displacement(*places[:, outer])[component]
     yields = material(plan.bodies, plan.scales, solid, misfit=True)
-    problem = ContactProblem([block], gap0, yields, forces, far=far)
+    problem = ContactProblem([solid], gap0, yields, forces, far=far)
     return Model(plan, problem, surface, sphere.strain(*solid.points))
 
 

@@ -248,15 +248,6 @@ def rounded_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
     return r, np.array(z)
 
 
-def coated_core(scene: Scene, plastic: float | None) -> Core:
-    """The well resolved part of the mesh, of the larger contact; plastic: its radius after yield."""
-    flows = stated(scene.body.coating).yield_stress is not None
-    reach = max(1.0, expected_radius(scene), plastic or 1.0, yielded_radius(scene))
-    if flows or plastic is not None:
-        return plastic_core(reach)
-    return Core(ELASTIC.radius * reach, ELASTIC.depth * reach)
-
-
 def coated_lines(scene: Scene, core: Core) -> tuple[Array, Array]:
     """(r, z) mesh lines, sized by the smaller contact, with and without coating, near it."""
     coating = stated(coating_of(scene, scales(scene)))
@@ -289,10 +280,13 @@ def flat_end(scene: Scene) -> float:
 
 def choose_core(scene: Scene) -> Core:
     """The uniform part of the mesh: larger if Hertz's stresses yield, and for a softer coating."""
-    radius = None if is_punch(scene) else plastic_radius(scene)
-    if scene.body.coating is not None:
-        return coated_core(scene, radius)
-    return ELASTIC if radius is None else plastic_core(radius)
+    coating, radius = scene.body.coating, None if is_punch(scene) else plastic_radius(scene)
+    if coating is None:
+        return ELASTIC if radius is None else plastic_core(radius)
+    reach = max(1.0, expected_radius(scene), radius or 1.0, yielded_radius(scene))
+    if coating.yield_stress is not None or radius is not None:
+        return plastic_core(reach)
+    return Core(ELASTIC.radius * reach, ELASTIC.depth * reach)
 
 
 def choose_lines(scene: Scene) -> tuple[Array, Array]:

@@ -12,105 +12,71 @@ side and sum(lambda) = F.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, cg, splu
 
 from fem_reference.common.arrays import Array, Bools
-from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
+from fem_reference.common.elasticity import Solid
 from fem_reference.common.far_field import normal_far_field
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.quadrilaterals import AxisymmetricSolid, elimination_order
+from fem_reference.common.quadrilaterals import MatchedBodies, elimination_order
 from fem_reference.common.schedule import Load
 
 FEW = 12
 """Iterations with earlier factors, each a twentieth of new ones: beyond, these are cheaper."""
 
 
-@dataclass(frozen=True)
-class Block:
-    """One body of the contact, with the elastic constants of its far field."""
+class ContactProblem(MatchedBodies):
+    """One body against a rigid surface, or two.
 
-    solid: AxisymmetricSolid
-    elastic: Elastic
-
-    def far_field(self) -> Array:
-        """(size,) displacements far away under a unit point force; zero elsewhere."""
-        values, locations = np.zeros(self.solid.size), self.solid.basis.doflocs
-        for component in (0, 1):
-            far = self.solid.boundary_dofs("far", component)
-            r, z = locations[:, far]
-            values[far] = normal_far_field(self.solid.coating, self.elastic, r, z)[component]
-        return values
-
-
-class ContactProblem:
-    """One body against a rigid surface, or two whose surface nodes match, each in its own (r, z into the
-    body).
-
-    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. material: of
-    the first body, None if it is elastic; the other body always is. prescribed: (size,) nodal forces of a
-    given pressure under a unit force, which then takes the place of contact. The outer boundary of each
-    body is displaced as by the point force that balances the contact, so that delta counts from infinity;
-    far: (size,), or so under a unit of the load.
+    gap0: (n_candidates,) initial gap of the surface nodes that may touch, by r from the axis. prescribed:
+    (size,) nodal forces of a given pressure under a unit force, which then takes the place of contact. The
+    outer boundary of each body is displaced as by the point force that balances the contact, so that delta
+    counts from infinity; far: (size,), or so under a unit of the load.
     """
 
     anchored = True
 
     def __init__(
         self,
-        blocks: Sequence[Block],
+        solids: Sequence[Solid],
         gap0: Array,
         material: Material | None = None,
         prescribed: Array | float = 0.0,
         *,
         far: Array | None = None,
     ):
-        self.blocks, self.gap0, self.material, self.prescribed = tuple(blocks), gap0, material, prescribed
-        sizes = [block.solid.size for block in blocks]
-        self.size = sum(sizes)
-        self.offsets = np.cumsum(sizes) - sizes  # first degree of freedom of each body
-        surface = [block.solid.boundary_dofs("surface", 1)[: gap0.size] for block in blocks]
-        # (n_blocks, n_candidates): u_z of the candidates
-        self.normal = np.stack(surface) + self.offsets[:, None]
+        super().__init__(solids, slice(gap0.size), gap0, material)
+        self.prescribed = prescribed
         # displacements of the softer body are eliminated: those of a nearly rigid one are small differences
-        self.slave = int(np.argmin([block.elastic.young for block in blocks]))
-        self.fixed, self.far_field = self._supports(far)
-        self.order = elimination_order(blocks[0].solid, len(blocks))
-
-    def _supports(self, far: Array | None) -> tuple[Bools, Array]:
-        """(size,) prescribed degrees of freedom, and their values under a unit force."""
-        fixed, values = np.zeros(self.size, dtype=bool), np.zeros(self.size)
-        for block, offset in zip(self.blocks, self.offsets, strict=True):
-            values[offset:][: block.solid.size] = block.far_field() if far is None else far
+        self.slave = int(np.argmin([solid.elastic.young for solid in solids]))
+        self.order = elimination_order(solids[0], len(solids))
+        # (size,) prescribed degrees of freedom, and their values under a unit force
+        self.fixed, self.far_field = np.zeros(self.size, dtype=bool), np.zeros(self.size)
+        for i, solid in enumerate(solids):
+            fixed, values = self.fixed[i * self.count :], self.far_field[i * self.count :]
             for component in (0, 1):
-                fixed[offset + block.solid.boundary_dofs("far", component)] = True
-            axis = block.solid.boundary_dofs("axis", 0)
-            fixed[offset + axis], values[offset + axis] = True, 0.0
-        return fixed, values
-
-    def body(self, u: Array, index: int) -> Array:
-        """Displacements of one body."""
-        return u[self.offsets[index] :][: self.blocks[index].solid.size]
+                outer = solid.boundary_dofs("far", component)
+                u = normal_far_field(solid.coating, solid.elastic, *solid.basis.doflocs[:, outer])
+                fixed[outer], values[outer] = True, u[component] if far is None else far[outer]
+            axis = solid.boundary_dofs("axis", 0)
+            fixed[axis], values[axis] = True, 0.0
 
     def internal_force(self, u: Array, history: History | None = None) -> Array:
         """Internal force (size,) of all bodies when no plastic strain changes any more."""
         plastic = [0.0 if history is None else history.inelastic, 0.0]
-        solids = [block.solid for block in self.blocks]
-        parts = [s.internal_force(s.stress(self.body(u, i), plastic[i])) for i, s in enumerate(solids)]
+        parts = [s.internal_force(s.stress(self.body(u, i), plastic[i])) for i, s in enumerate(self.solids)]
         return np.concatenate(parts)
 
     def respond(self, u: Array, start: History | None) -> Response:
         """Response at u in a step from `start`; the caller decides whether it becomes history."""
         if self.material is None or start is None:
-            return Response(
-                self.internal_force(u), self.tangent([b.solid.stiffness for b in self.blocks]), None
-            )
-        solid, *others = (block.solid for block in self.blocks)
+            return Response(self.internal_force(u), self.tangent([s.stiffness for s in self.solids]), None)
+        solid, *others = self.solids
         update = self.material.update(solid.strain(self.body(u, 0)), start)
         forces = [solid.internal_force(update.stress)]
         forces += [s.internal_force(s.stress(self.body(u, i))) for i, s in enumerate(others, start=1)]
@@ -120,10 +86,6 @@ class ContactProblem:
     def tangent(self, matrices: Sequence[sp.csr_matrix]) -> sp.csr_matrix:
         """Derivative of the internal force from that of each body."""
         return matrices[0] if len(matrices) == 1 else sp.block_diag(matrices, format="csr")
-
-    def gap(self, u: Array, approach: float) -> Array:
-        """gap0 + sum of u_z - delta at the candidates."""
-        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
     def elimination(self, active: Bools) -> tuple[sp.csr_matrix, Array]:
         """(T, d1) of changes T v + delta d1 that leave the gap of the active nodes as it is, for every v

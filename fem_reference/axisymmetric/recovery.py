@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.axisymmetric.model import Model
+from fem_reference.common import recovery as common
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
@@ -20,19 +21,19 @@ from sam.scene.yield_curve import Kinks
 
 
 @dataclass(frozen=True)
-class Stresses:
+class Stresses(common.Stresses):
     """Stress of the body in Pa, components (rr, tt, zz, rz), tension positive, and its plastic strain.
 
-    r, z: (n_elements, 4) Gauss points in m; gauss: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending;
+    r, z: (n_elements, 4) Gauss points in m; stress: (4, n_elements, 4); axis_z: (n_axis,) in m, ascending;
     axis: (4, n_axis); peeq, axis_peeq: accumulated plastic strain at the same points; plastic_strain: as
-    gauss, tensor components; None for an elastic body; interface: depth of a coating's lower face in m. The
+    stress, tensor components; None for an elastic body; interface: depth of a coating's lower face in m. The
     axis has a point there, with the values below it; those above are of the coating alone. kinks: of the
     yield stress of a body that has yielded; there fields over depth have kinks too.
     """
 
     r: Array
     z: Array
-    gauss: Array
+    stress: Array
     axis_z: Array
     axis: Array
     peeq: Array
@@ -40,10 +41,6 @@ class Stresses:
     plastic_strain: Array | None = None
     interface: float | None = None
     kinks: Kinks = EVEN
-
-    def in_elements(self, gauss: Array) -> Array:
-        """(..., n_elements) means over the Gauss points, weighted by the volume of their rings."""
-        return (gauss * self.r).sum(axis=-1) / self.r.sum(axis=-1)
 
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or from it downwards."""
@@ -53,13 +50,35 @@ class Stresses:
         return Stresses(
             self.r[elements],
             self.z[elements],
-            self.gauss[:, elements],
+            self.stress[:, elements],
             self.axis_z[axis],
             self.axis[:, axis],
             self.peeq[elements],
             self.axis_peeq[axis],
             kinks=self.kinks,
         )
+
+    def largest_in_layer(self, coating: bool) -> Peak:
+        """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
+        part = self.layer(coating)
+        inside = part.largest_mises()
+        if coating and part.peeq.any():
+            return inside
+        interface = stated(self.interface)
+        depths = (0.0, interface) if coating else (interface,)
+        on_faces = [(float(mises(on_face(part, depth)).max()), depth) for depth in depths]
+        return max(inside, *on_faces, key=lambda peak: peak[0])
+
+    def largest(self, field: Array, even: Array) -> Peak:
+        """Largest value over Gauss points (n_elements, 4) and axis (n_axis,), and its depth in m (None if all
+        are zero); on the axis of `over_depth`.
+        """
+        i = int(np.argmax(even))
+        if field.max() > even[i]:
+            return float(field.max()), float(self.z.ravel()[np.argmax(field)])
+        if even[i] == 0.0:
+            return 0.0, None
+        return over_depth(self.axis_z, even, i, self.kinks)
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -103,21 +122,9 @@ def on_face(part: Stresses, depth: float) -> Array:
     if not row.any():
         return np.zeros((4, 1))
     order = np.lexsort((np.abs(part.z[row][0] - depth), np.round(part.r[row][0] / part.r[row][0].max(), 9)))
-    z, s = part.z[row][:, order], part.gauss[:, row][:, :, order]
+    z, s = part.z[row][:, order], part.stress[:, row][:, :, order]
     near, far = (slice(k, None, 2) for k in (0, 1))
     return continued((z[:, near], z[:, far]), (s[..., near], s[..., far]), depth).reshape(4, -1)
-
-
-def largest_in_layer(s: Stresses, coating: bool) -> Peak:
-    """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
-    part = s.layer(coating)
-    inside = largest_mises(part)
-    if coating and part.peeq.any():
-        return inside
-    interface = stated(s.interface)
-    depths = (0.0, interface) if coating else (interface,)
-    on_faces = [(float(mises(on_face(part, depth)).max()), depth) for depth in depths]
-    return max(inside, *on_faces, key=lambda peak: peak[0])
 
 
 def on_axis(r: Array, z: Array, gauss: Array) -> tuple[Array, Array]:
@@ -136,31 +143,3 @@ def on_axis(r: Array, z: Array, gauss: Array) -> tuple[Array, Array]:
     (depth, first), (_, second) = columns
     r1, r2 = radii**2
     return depth, (first * r2 - second * r1) / (r2 - r1)
-
-
-def largest_mises(s: Stresses) -> Peak:
-    """Largest von Mises stress in Pa and its depth in m; of a point that has yielded as it is."""
-    if s.interface is not None:
-        return max((largest_in_layer(s, coating) for coating in (True, False)), key=lambda peak: peak[0])
-    q = mises(s.gauss)
-    if s.peeq.flat[q.argmax()] > 0.0:
-        return float(q.max()), float(s.z.flat[q.argmax()])
-    return largest(s, q, mises(s.axis))
-
-
-def largest_peeq(s: Stresses) -> Peak:
-    """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
-    parts = [s] if s.interface is None else [s.layer(coating) for coating in (True, False)]
-    return max((largest(part, part.peeq, part.axis_peeq) for part in parts), key=lambda peak: peak[0])
-
-
-def largest(s: Stresses, gauss: Array, axis: Array) -> Peak:
-    """Largest value over Gauss points (n_elements, 4) and axis (n_axis,), and its depth in m (None if all
-    are zero); on the axis of `over_depth`.
-    """
-    i = int(np.argmax(axis))
-    if gauss.max() > axis[i]:
-        return float(gauss.max()), float(s.z.ravel()[np.argmax(gauss)])
-    if axis[i] == 0.0:
-        return 0.0, None
-    return over_depth(s.axis_z, axis, i, s.kinks)

@@ -17,7 +17,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.far_field import words_of
 from fem_reference.common.solution import Quantities
 from fem_reference.common.tables import Surface, columns, plane_mesh
-from sam.scene.result import AXIS, PLANE, FieldMesh, Table
+from sam.scene.result import AXIS, PLANE, Table
 
 SINGULAR = (
     "punch: the pressure is singular at the edge; "
@@ -31,31 +31,15 @@ def axis_table(state: str, s: Stresses) -> Table:
     return columns(AXIS, [state, s.axis_z, s.axis_peeq, mises(s.axis), rr, tt, zz, 0.0, 0.0, 0.0])
 
 
-def surface_of(model: Model, equilibrium: Equilibrium) -> Surface:
-    """The surface nodes; x is r. The gap is not finite beside a punch and where the pressure is given."""
-    dofs = model.body.boundary_dofs("surface", 1)
-    uz = [model.problem.body(equilibrium.u, i)[dofs] for i in range(len(model.problem.blocks))]
-    gap = model.initial_gap(model.surface) + np.sum(uz, axis=0) - equilibrium.approach
-    return Surface.of_section(model, equilibrium, model.surface, np.where(model.prescribed, np.nan, gap))
-
-
 def plane_table(state: str, s: Stresses) -> Table:
     """Gauss points, element by element."""
-    return columns(PLANE, [state, s.r.ravel(), s.z.ravel(), s.peeq.ravel(), mises(s.gauss).ravel()])
-
-
-def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
-    """The body in the plane y = 0: pressure at the corner nodes, stresses and strains in the elements."""
-    cells = {"stress": s.in_elements(s.gauss)}
-    if s.plastic_strain is not None:
-        cells |= {"peeq": s.in_elements(s.peeq)[None], "strain": s.in_elements(s.plastic_strain)}
-    return plane_mesh(model, equilibrium, model.surface, cells)
+    return columns(PLANE, [state, s.r.ravel(), s.z.ravel(), s.peeq.ravel(), mises(s.stress).ravel()])
 
 
 def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
     """Quantities of the contact at the peak."""
     unit = model.scales
-    force = peak.force if model.prescribed else float(peak.multipliers.sum())
+    force = peak.force if model.plan.prescribed else float(peak.multipliers.sum())
     return {
         "force_N": force * (model.plan.force / (unit.peak_force or 1.0)),
         "contact_radius_m": model.contact_radius(peak) * unit.length,
@@ -84,14 +68,11 @@ METHOD = solution.Method(
     plan=plan,
     build=build,
     stresses=recovery.stresses,
-    largest_mises=recovery.largest_mises,
-    largest_peeq=recovery.largest_peeq,
-    largest_in_layer=recovery.largest_in_layer,
     contact_quantities=_contact_quantities,
     axis=axis_table,
     plane=plane_table,
-    field_mesh=field_mesh,
-    surface=surface_of,
+    field_mesh=lambda model, state, s: plane_mesh(model, state, s.r),
+    surface=Surface.of_section,
     discretisation=_discretisation,
     warnings=lambda model: (SINGULAR,) if model.plan.punch else (),
 )

@@ -26,6 +26,7 @@ from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.elasticity import deviator, mises
 from fem_reference.common.plasticity import J2, History, Returned, deviatoric
+from sam.scene.section import stated
 from sam.scene.yield_curve import YieldCurve, step_energies
 
 MAX_ITERATIONS = 100
@@ -70,19 +71,19 @@ class KinematicJ2(J2):
 
     def back_stress(self, history: History) -> Array:
         """The sum of the back-stresses at every point, (n, n_elements, n_points)."""
-        return self.back.stresses(history.stored_back).sum(axis=0)
+        return self.back.stresses(stated(history.back)).sum(axis=0)
 
     def dissipated(self, before: History, after: History) -> Array:
         """Energy that a step dissipates at every point; not what the back-stresses store."""
         strain = (after.plastic_strain - before.plastic_strain) / self.engineering[:, None]
         modulus, recovery = self.back.modulus, self.back.recovery
         length = after.peeq - before.peeq
-        back = step_energies(modulus, recovery, before.stored_back, strain, length=length)
+        back = step_energies(modulus, recovery, stated(before.back), strain, length=length)
         return super().dissipated(before, after) + back.dissipated
 
     def returned(self, trial: Array, start: History, plastic: Bools) -> Returned:
         """Steps 1 to 4 at the points that yield."""
-        s, a, back = deviator(trial[:, plastic]), start.stored_back[:, :, plastic], self.back.at(plastic)
+        s, a, back = deviator(trial[:, plastic]), stated(start.back)[:, :, plastic], self.back.at(plastic)
         factor, curve, peeq = self.factor[plastic], self.curve.at(plastic), start.peeq[plastic]
         X = back.stresses(a)
         dp = self._increment(s, X, back, plastic=plastic, peeq=peeq)

@@ -111,11 +111,6 @@ class Equilibrium:
         return self.load.force
 
     @property
-    def iterations(self) -> int:
-        """Iterations of Newton's method."""
-        return len(self.residuals)
-
-    @property
     def residual(self) -> float:
         """The last residual; zero where nothing was to do."""
         return self.residuals[-1] if self.residuals else 0.0

@@ -49,15 +49,16 @@ class Solid:
     """An elastic body on a mesh, given the strain operator of its elements.
 
     Displacements are (n_dofs,), fields at the Gauss points (n_strains, n_elements, n_points). basis: of
-    scikit-fem, with a vector element; B: (n_elements, n_points, n_strains, n_local), strain = B u_element,
-    with engineering shear; weights: (n_elements, n_points), the volume of each Gauss point; coating: on the
-    body, whose thickness is a plane between elements.
+    scikit-fem, with a vector element; elastic: constants below the coating; B: (n_elements, n_points,
+    n_strains, n_local), strain = B u_element, with engineering shear; weights: (n_elements, n_points), the
+    volume of each Gauss point; coating: on the body, whose thickness is a plane between elements.
     """
 
     def __init__(
         self, basis: Basis, B: Array, weights: Array, elastic: Elastic, *, coating: Coating | None = None
     ):
-        self.basis, self._B, self.weights, self.coating = basis, B, weights, coating
+        self.basis, self._B, self.weights = basis, B, weights
+        self.elastic, self.coating = elastic, coating
         self.points = np.asarray(basis.global_coordinates())  # (dimension, n_elements, n_points)
         self.stiffness_tensor = stiffness_tensor(elastic.young, elastic.poisson, shears=B.shape[2] - 3)
         self.stiffness = self._stiffness()

@@ -100,7 +100,8 @@ def scales(scene: Scene) -> Scales:
     force, counter = peak_force(scene), stated(scene.counterbody)
     radius = equivalent_radius(counter)
     if counter.shape in PUNCHES:
-        radius = radius_under_force(counter, force / modulus) if counter.shape == ROUNDED else radius
+        if counter.shape == ROUNDED:
+            radius = _radius(counter, lambda a, t: force_at(counter, a, t) < force / modulus)
         displacement = force / (2.0 * modulus * radius) if force > 0.0 else radius
         return Scales(radius, displacement, modulus, 2.0 if force > 0.0 else 0.0)
     if counter.length is not None:
@@ -157,14 +158,17 @@ def force_of_approach(scene: Scene, approach: float) -> float:
 
 
 def force_of_rounded(scene: Scene, counter: CounterBody, approach: float) -> float:
-    """The same of a punch with a rounded edge, at most 3 yield stresses on its part below the surface."""
-    force = contact_modulus(scene) * force_at(counter, radius_at_approach(counter, approach))
+    """The same of a punch with a rounded edge at an approach a b (tan t - t)/R, at most 3 yield stresses on
+    its part below the surface.
+    """
+    flat, radius = stated(counter.flat_radius), stated(counter.radius)
+    a = _radius(counter, lambda a, t: a * flat * (np.tan(t) - t) / radius < approach)
+    force = contact_modulus(scene) * force_at(counter, a)
     if scene.body.plasticity is None:
         return force
-    radius = stated(counter.radius)
     beyond = np.sqrt(2.0 * radius * approach)
     strength = scene.body.plasticity.strength().least(0.2 * beyond / radius)
-    return float(min(force, 3.0 * strength * np.pi * (stated(counter.flat_radius) + beyond) ** 2))
+    return float(min(force, 3.0 * strength * np.pi * (flat + beyond) ** 2))
 
 
 def kinks_of(scene: Scene, units: Scales) -> Array:
@@ -210,19 +214,10 @@ def plastic_radius(scene: Scene) -> float | None:
     return float(max(1.0, np.sqrt(2.0 / 3.0 * peak / mean)))
 
 
-def radius_under_force(counter: CounterBody, force: float) -> float:
-    """Contact radius in m, F/E* = a^3/R [4/3 sin^3 t - cos t (t - sin t cos t)], cos t = b/a."""
-    return _radius(counter, lambda a, t: force_at(counter, a, t) < force)
-
-
-def radius_at_approach(counter: CounterBody, approach: float) -> float:
-    """Contact radius in m at an approach a b (tan t - t)/R."""
-    flat, radius = stated(counter.flat_radius), stated(counter.radius)
-    return _radius(counter, lambda a, t: a * flat * (np.tan(t) - t) / radius < approach)
-
-
 def force_at(counter: CounterBody, a: float, t: float | None = None) -> float:
-    """Force in N over E* at a contact radius in m; t: its angle."""
+    """Force in N over E* at a contact radius in m, a^3/R [4/3 sin^3 t - cos t (t - sin t cos t)], cos t =
+    b/a; t: its angle.
+    """
     flat, radius = stated(counter.flat_radius), stated(counter.radius)
     angle = np.arccos(min(1.0, flat / a)) if t is None else t
     beyond = angle - np.sin(angle) * np.cos(angle)

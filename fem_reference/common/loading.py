@@ -155,7 +155,9 @@ def onward(model: ContactModel, record: Progressed) -> Progressed:
     target, *rest = record.targets
     if target.steps_if_yielding:
         state = model.load(target.load, record.state)
-        if not (state.converged and same_history(record.state, state)):
+        before, after = record.state.history, state.history
+        still = before is None or after is None or np.array_equal(before.peeq, after.peeq)
+        if not (state.converged and still):
             return replace(record, targets=[*divided(target, record.state.force, state.work), *rest])
         step = Step(state, state.work, note=ELASTIC_UNLOADING, attempts=(attempt(state),))
     else:
@@ -180,13 +182,6 @@ def divided(target: Target, force: float, spent: Work) -> list[Target]:
         for k in range(1, count + 1)
     ]
     return [replace(parts[0], spent=spent), *parts[1:]]
-
-
-def same_history(before: Equilibrium, after: Equilibrium) -> bool:
-    """Whether nothing has yielded in between."""
-    if before.history is None or after.history is None:
-        return True
-    return np.array_equal(before.history.peeq, after.history.peeq)
 
 
 def advance(model: ContactModel, load: Load, start: Equilibrium, level: int = 0) -> Step:

@@ -52,7 +52,11 @@ def uniform_then_growing(
 def two_sided(low: float, high: float, size: float, box: float, *, growth: float = GROWTH) -> Array:
     """Lines uniform from low <= 0 to high >= 0, with 0, then growing over `box` on both sides."""
     below, above = (int(np.ceil(round(reach / size, 9))) for reach in (-low, high))
-    core = size * np.arange(-below, above + 1)
+    return widened(size * np.arange(-below, above + 1, dtype=float), size, box, growth)
+
+
+def widened(core: Array, size: float, box: float, growth: float) -> Array:
+    """Equidistant lines continued by growing ones over `box` beyond both ends."""
     outside = grow(0.0, box, size, growth)
     return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])
 
@@ -113,11 +117,9 @@ def marched(
     return scaled
 
 
-def coated_depths(
-    thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH, fewest: int = 2
-) -> Array:
-    """z lines to `box`, one at the interface, `fewest` elements or more above it, growing below."""
-    coating = marched(0.0, thickness, min(sizes.fine, thickness / fewest), sizes, growth=growth)
+def coated_depths(thickness: float, box: float, sizes: Sizes, *, growth: float = GROWTH) -> Array:
+    """z lines to `box`, one at the interface, two elements or more above it, growing below."""
+    coating = marched(0.0, thickness, min(sizes.fine, thickness / 2.0), sizes, growth=growth)
     last = coating[-1] - coating[-2] if coating.size > 1 else thickness
     below = marched(thickness, box, growth * last, sizes, growth=growth)
     return np.concatenate([[0.0], coating, below])

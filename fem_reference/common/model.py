@@ -61,11 +61,6 @@ class ContactModel(ABC):
         return self.plan.scales
 
     @property
-    def prescribed(self) -> bool:
-        """Whether the pressure of Hertz is given instead of a counter-body."""
-        return self.plan.prescribed
-
-    @property
     def elastic(self) -> bool:
         """Whether no body has a plastic history."""
         return self.problem.material is None
@@ -168,7 +163,7 @@ class ContactModel(ABC):
             load = load.found(self.expected_force(load.approach, load.force, previous))
         if load.force == 0.0 and not previous.yielded:
             return self.virgin(load)
-        if load.force == 0.0 or self.prescribed:
+        if load.force == 0.0 or self.plan.prescribed:
             return without_contact(self.problem, load, self.scales.peak_force, u=u, history=history)
         start = previous.active
         if not (halved and start.any()):

@@ -95,8 +95,10 @@ def planned(kind: type[AnyPlan], scene: Scene, units: Scales, **of_geometry: Any
     if bodies.coating is None:
         return plan
     bodies = replace(bodies, coating=None)
-    schedule = steps_of(scene, units, bodies, sliding).of_bare_contact(not bodies.yields)
-    return replace(plan, bare=replace(plan, bodies=bodies, schedule=schedule, expected=1.0))
+    targets = steps_of(scene, units, bodies, sliding).targets
+    last = max(i for i, target in enumerate(targets) if not target.unloads)
+    steps = Schedule(targets[0 if bodies.yields else last : last + 1])  # of an elastic body the peak alone
+    return replace(plan, bare=replace(plan, bodies=bodies, schedule=steps, expected=1.0))
 
 
 def slide(scene: Scene, length: float) -> Sliding:

@@ -86,13 +86,6 @@ class History:
         return cls(np.zeros((components, *shape)), np.zeros(shape), back=back)
 
     @property
-    def stored_back(self) -> Array:
-        """The strains of the back-stresses; ValueError without them."""
-        if self.back is None:
-            raise ValueError("the history has no back-stress")
-        return self.back
-
-    @property
     def yielded(self) -> bool:
         """Whether any point ever has."""
         return bool(self.peeq.any())

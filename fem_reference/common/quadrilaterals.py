@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from skfem import Basis, ElementQuadS2, ElementVector, MeshQuad
 from skfem.element import Element
@@ -11,6 +13,7 @@ from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.elasticity import Solid
 from fem_reference.common.linear import nested_dissection
+from fem_reference.common.plasticity import Material
 
 
 def tensor_mesh(x: Array, z: Array, *, half: bool) -> MeshQuad:
@@ -86,6 +89,34 @@ def _strain_operator(basis: Basis, r: Array | None) -> Array:
         hoop = np.zeros_like(basis.dx) if r is None else u[0] / r
         rows.append([grad[0, 0], hoop, grad[1, 1], grad[0, 1] + grad[1, 0]])
     return np.ascontiguousarray(np.moveaxis(np.array(rows), (2, 3, 1, 0), (0, 1, 2, 3)))
+
+
+class MatchedBodies:
+    """One body, or two whose surface nodes match, each in its own (x or r, z into the body).
+
+    solids: on one mesh, the first may yield, with `material`; candidates: places in the surface of the nodes
+    that may touch, by x; gap0: (n_candidates,) their initial gap.
+    """
+
+    def __init__(
+        self, solids: Sequence[Solid], candidates: slice, gap0: Array, material: Material | None = None
+    ):
+        self.solids, self.gap0, self.material = tuple(solids), gap0, material
+        self.count = solids[0].size
+        self.size = self.count * len(solids)
+        # u_z and u_x of the candidates, (n_bodies, n_candidates)
+        first = np.arange(len(solids))[:, None] * self.count
+        self.normal, self.along = (
+            first + solids[0].boundary_dofs("surface", component)[candidates] for component in (1, 0)
+        )
+
+    def body(self, u: Array, index: int) -> Array:
+        """Displacements of one body."""
+        return u[index * self.count :][: self.count]
+
+    def gap(self, u: Array, approach: float) -> Array:
+        """gap0 + sum of u_z - delta at the candidates."""
+        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
 
 def edge_weights(x: Array, width: Array | float = 1.0) -> Array:

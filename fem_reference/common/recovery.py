@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Values between the points of a mesh: polynomials over depth; a percentile of their values."""
+"""Stresses of a state and their largest values; values between the points of a mesh: polynomials over depth;
+a percentile of their values.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from typing import Self
 
 import numpy as np
 
 from fem_reference.common.arrays import Array
+from fem_reference.common.elasticity import mises
 from fem_reference.common.plasticity import History
 from sam.scene.result import EXCEEDING, STRAINED
 from sam.scene.yield_curve import Kinks
@@ -16,6 +21,48 @@ Peak = tuple[float, float | None]
 """A largest value and its depth in m, None if all are zero."""
 REACH = 1.3
 """Nodes up to so many contact radii fix the edge: with 32 elements in it Hertz's is met to 7e-5."""
+
+
+class Stresses(ABC):
+    """Stress of the half-space in Pa, components first, tension positive, and accumulated plastic strain;
+    axis, axis_peeq: the same at x = y = 0; interface: depth in m of the lower face of a coating, None without
+    one.
+    """
+
+    stress: Array
+    peeq: Array
+    axis: Array
+    axis_peeq: Array
+    interface: float | None = None
+
+    @property
+    def even(self) -> tuple[Array, Array]:
+        """Stress and accumulated plastic strain where fields are even, which has values of its own."""
+        return self.axis, self.axis_peeq
+
+    @abstractmethod
+    def largest(self, field: Array, even: Array) -> Peak:
+        """Largest value of a field in the body and where it is even, and its depth in m."""
+
+    def layer(self, _coating: bool) -> Self:
+        """The part above the interface, or from it downwards; all of a body without a coating."""
+        return self
+
+    def largest_in_layer(self, _coating: bool) -> Peak:
+        """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
+        return self.largest_mises()
+
+    def largest_mises(self) -> Peak:
+        """Largest von Mises stress in Pa and its depth in m; of a point that has yielded as it is."""
+        if self.interface is not None:
+            return max(map(self.largest_in_layer, (True, False)), key=lambda peak: peak[0])
+        q, even = mises(self.stress), mises(self.even[0])
+        return self.largest(q, np.zeros_like(even) if self.peeq.flat[q.argmax()] > 0.0 else even)
+
+    def largest_peeq(self) -> Peak:
+        """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
+        parts = [self] if self.interface is None else [self.layer(coating) for coating in (True, False)]
+        return max((part.largest(part.peeq, part.even[1]) for part in parts), key=lambda peak: peak[0])
 
 
 def continued(z: Sequence[Array] | Array, values: Sequence[Array] | Array, depth: float) -> Array:

@@ -129,11 +129,6 @@ class Schedule:
         ]
         return replace(self, targets=tuple(targets))
 
-    def of_bare_contact(self, elastic: bool) -> Schedule:
-        """The steps without coating: up to the last peak; of an elastic body the peak alone."""
-        last = max(i for i, target in enumerate(self.targets) if not target.unloads)
-        return Schedule(self.targets[last if elastic else 0 : last + 1])
-
 
 def schedule_of(
     loading: Loading, peak_force: float, *, sliding: Sliding, elastic: bool = False, unit: float = 1.0
@@ -145,18 +140,13 @@ def schedule_of(
     targets: list[Target] = []
     for cycle in range(1, strokes.cycles + 1):
         stroke, peak = strokes.of_cycle(cycle), Load(peak_force, sliding.ratio(cycle), approach=approach)
-        steps = loading.steps if stroke.pressed else 0
-        targets += _of_cycle(steps, Target(peak, cycle), sliding.way(cycle))
+        steps = loading.steps if stroke.pressed else 0  # none where the load is on
+        start, *others = (replace(peak, x=x, y=y) for x, y in sliding.way(cycle).tolist())
+        loads = [start.part(k, steps) for k in range(1, steps + 1)] + others
+        targets += [Target(load, cycle, number) for number, load in enumerate(loads, start=1)]
         if stroke.unloads:
             targets.append(unloading(loading.unload_steps or loading.steps, targets[-1]))
     return Schedule(tuple(targets), loading.cycles, repeats)
-
-
-def _of_cycle(steps: int, peak: Target, places: Array) -> list[Target]:
-    """So many equal steps to the peak, none where the load is on, and the pass if there is one."""
-    start, *others = (replace(peak.load, x=x, y=y) for x, y in places.tolist())
-    loads = [start.part(k, steps) for k in range(1, steps + 1)] + others
-    return [replace(peak, load=load, number=number) for number, load in enumerate(loads, start=1)]
 
 
 def unloading(count: int, last: Target) -> Target:

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from fem_reference.common.linear import NO_WORK
 from fem_reference.common.loading import Progressed, Step, run
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plan import Plan
-from fem_reference.common.recovery import Peak, exceeded_strain
+from fem_reference.common.recovery import Stresses, exceeded_strain
 from fem_reference.common.tables import (
     Surface,
     element_fields,
@@ -98,16 +98,8 @@ def coated_then_bare(
     return Solved(coated, steps, bare, bare_steps)
 
 
-class Peeq(Protocol):
-    """Stresses of a state, of which the accumulated plastic strain is asked."""
-
-    @property
-    def peeq(self) -> Array:
-        """Accumulated plastic strain."""
-
-
 P = TypeVar("P", bound=Plan)
-S = TypeVar("S", bound=Peeq)
+S = TypeVar("S", bound=Stresses)
 Quantities = dict[str, float | None]
 CONDITIONS = ("force_balance", "tension", "penetration", "gap_in_contact")
 
@@ -117,8 +109,7 @@ class Method(Generic[P, M, S]):
     """What a geometry has of its own: functions of its plan P, its model M and its stresses S.
 
     setups: what a set-up of the linear solver is called; plan, build: of a scene, of a plan; stresses: of a
-    state; largest_mises, largest_peeq: with their depths; largest_in_layer: von Mises stress of the coating
-    (True) or below it; contact_quantities: at the peak, beside those of all geometries; axis, plane: tables
+    state; contact_quantities: at the peak, beside those of all geometries; axis, plane: tables
     of a state and its name; field_mesh, surface: of one state; discretisation: in SI units; plastic_shear: in
     m, what plastic shear moves the surface along x, -integral of 2 e_p_xz over z, at places x in m; further:
     tables of all states by name; warnings: what a reader of the result must know; of_path: tables, and
@@ -129,9 +120,6 @@ class Method(Generic[P, M, S]):
     plan: Callable[[Scene], P]
     build: Callable[[Any], M]
     stresses: Callable[[M, Equilibrium], S]
-    largest_mises: Callable[[S], Peak]
-    largest_peeq: Callable[[S], Peak]
-    largest_in_layer: Callable[[S, bool], Peak]
     contact_quantities: Callable[[M, Equilibrium], Quantities]
     axis: Callable[[str, S], Table]
     plane: Callable[[str, S], Table]
@@ -147,7 +135,7 @@ class Method(Generic[P, M, S]):
 
     def peeq_max(self, model: M, state: Equilibrium) -> float:
         """Return the largest accumulated plastic strain of a state, as in the quantities."""
-        return self.largest_peeq(self.stresses(model, state))[0] if state.yielded else 0.0
+        return self.stresses(model, state).largest_peeq()[0] if state.yielded else 0.0
 
     def tables(
         self, model: M, states: Mapping[str, Equilibrium], fields: Mapping[str, S]
@@ -294,12 +282,12 @@ def coated_quantities(method: Method[P, M, S], solved: Solved[M], peak: Equilibr
     if solved.bare_model is None:
         return {}
     of_coated = method.stresses(solved.model, peak)
-    film, substrate = (method.largest_in_layer(of_coated, coating)[0] for coating in (True, False))
+    film, substrate = (of_coated.largest_in_layer(coating)[0] for coating in (True, False))
     values: Quantities = {"mises_max_film_Pa": film, "mises_max_substrate_Pa": substrate}
     if not solved.bare_steps or not (state := solved.bare_steps[-1].state).converged:
         return values
     p_max = solved.bare_model.largest_pressure(state)
-    mises_max = method.largest_in_layer(method.stresses(solved.bare_model, state), False)[0]
+    mises_max = method.stresses(solved.bare_model, state).largest_in_layer(False)[0]
     values |= {"p_max_bare_Pa": p_max, "mises_max_bare_Pa": mises_max}
     values["p_max_change"] = solved.model.largest_pressure(peak) / p_max - 1.0 if p_max else None
     values["mises_max_change"] = substrate / mises_max - 1.0 if mises_max else None
@@ -343,7 +331,7 @@ def verdict(method: Method[P, M, S], solved: Solved[M], peak: S) -> Status:
     return judge(solved.bare_model, solved.bare_steps, last)
 
 
-def judge(model: ContactModel, steps: Sequence[Step], peak: Peeq) -> Status:
+def judge(model: ContactModel, steps: Sequence[Step], peak: Stresses) -> Status:
     """Status of the load steps of one contact, whose largest contact judges the mesh."""
     states = [step.state for step in steps]
     if not states[-1].converged:
@@ -363,14 +351,14 @@ def quantities_of(
     """Every name of QUANTITIES, None where it does not apply; a coating's own come later."""
     first, *_ = states
     peak, s = states[first], fields[first]
-    mises_max, mises_depth = method.largest_mises(s)
-    peeq_max, peeq_depth = method.largest_peeq(s)
+    mises_max, mises_depth = s.largest_mises()
+    peeq_max, peeq_depth = s.largest_peeq()
     strain = None  # of a body that has not yielded
     if peak.history is not None:
         peeq = peak.history.peeq * model.scales.strain
         strain = exceeded_strain(peeq.ravel(), model.body.weights.ravel())
     values: Quantities = {
-        "approach_m": None if model.prescribed else peak.approach * model.scales.displacement,
+        "approach_m": None if model.plan.prescribed else peak.approach * model.scales.displacement,
         "p_max_Pa": model.largest_pressure(peak),
         "mises_max_Pa": mises_max,
         "mises_max_depth_m": mises_depth,
@@ -389,7 +377,7 @@ def quantities_of(
         values["tangential_displacement_center_m"] = surface.centre(surface.u[0]) if slides else None
     if UNLOADED in states:
         after = fields[UNLOADED]
-        values["residual_mises_max_Pa"] = method.largest_mises(after)[0]
+        values["residual_mises_max_Pa"] = after.largest_mises()[0]
         surface = method.surface(model, states[UNLOADED])
         if model.centred:
             values["residual_uz_center_m"] = surface.centre(surface.u[2])
@@ -414,7 +402,7 @@ def certificate(model: ContactModel, state: Equilibrium) -> dict[str, float]:
     if history is not None and material is not None:
         most = float(material.excess(model.stress(state), history).max())
         excess["yield_excess"] = max(0.0, most)
-    if state.force == 0.0 or model.prescribed:
+    if state.force == 0.0 or model.plan.prescribed:
         return dict.fromkeys(CONDITIONS, 0.0) | {"equilibrium": state.residual} | excess
     total, active, judged = model.part * state.force, state.active, slice(model.on_axis, None)
     forces = model.contact_forces(state)

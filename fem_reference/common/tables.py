@@ -17,6 +17,7 @@ from fem_reference.common.elasticity import mises
 from fem_reference.common.loading import Step, Strained
 from fem_reference.common.model import ContactModel
 from fem_reference.common.plasticity import History
+from fem_reference.common.recovery import plastic_fields
 from sam.scene import verdict
 from sam.scene.result import (
     BACK_STRESS,
@@ -55,10 +56,15 @@ class Surface:
     u: Array
 
     @classmethod
-    def of_section(cls, model: ContactModel, state: Equilibrium, x: Array, gap: Array) -> Surface:
-        """That of a section, whose nodes are at x (nx,); gap: (nx,), both in the units of the model."""
-        unit, u, none = model.scales, model.displacements(state), np.zeros(x.size)
-        ux, uz = (u[model.body.boundary_dofs("surface", component)] for component in (0, 1))
+    def of_section(cls, model: Any, state: Equilibrium) -> Surface:
+        """That of the model of a section; the gap is not finite where the pressure is given."""
+        unit, u, x = model.scales, model.displacements(state), model.surface
+        along, normal = (model.body.boundary_dofs("surface", component) for component in (0, 1))
+        ux, uz, none = u[along], u[normal], np.zeros(x.size)
+        bodies = range(len(model.problem.solids))
+        opened = np.sum([model.problem.body(state.u, i)[normal] for i in bodies], axis=0)
+        gap = model.at(state.load).initial_gap + opened - state.approach
+        gap = np.where(model.plan.prescribed, np.nan, gap)
         ratio = state.load.ratio if model.plan.sliding.coefficient else None
         pressure = (model.nodal_pressure(state) * unit.pressure)[:, None]
         moved = np.stack([ux, none, uz])[..., None] * unit.displacement
@@ -99,23 +105,26 @@ def at_zero_line(values: Array, line: Array) -> Array:
     return values[..., zero] if line[zero] == 0.0 else 0.5 * (values[..., zero - 1] + values[..., zero])
 
 
-def plane_mesh(
-    model: ContactModel, state: Equilibrium, surface: Array, cells: Mapping[str, Array]
-) -> FieldMesh:
-    """The half-space in the plane y = 0: pressure and displacement at the corner nodes, fields in elements.
-
-    surface: (n_surface,) places of the surface nodes; cells: means of the elements, "stress" (4, n) in Pa,
-    and of a body that yields "peeq" (1, n) and "strain" (4, n), the plastic one as a tensor.
+def plane_mesh(model: Any, state: Equilibrium, weights: Array) -> FieldMesh:
+    """The half-space of a section in the plane y = 0: pressure and displacement at the corner nodes, stress
+    and plastic strain in the elements. weights: (n_elements, n_points) of the points in the means of
+    elements.
     """
     unit, mesh = model.scales, model.body.basis.mesh
     x, z = mesh.p
-    pressure = np.interp(x, surface, model.nodal_pressure(state)) * (z == 0.0) * unit.pressure
+    pressure = np.interp(x, model.surface, model.nodal_pressure(state)) * (z == 0.0) * unit.pressure
     u = model.displacements(state) * unit.displacement
     ux, uz = (u[dofs] for dofs in model.body.basis.nodal_dofs)
 
-    data = {"mises_Pa": mises(cells["stress"]), "stress_Pa": six(cells["stress"]).T}
-    if "peeq" in cells:
-        data |= {"peeq": cells["peeq"][0], "plastic_strain": six(cells["strain"]).T}
+    def mean(field: Array) -> Array:
+        return (field * weights).sum(axis=-1) / weights.sum(axis=-1)
+
+    points = model.stress(state) * unit.pressure
+    peeq, strain = plastic_fields(state.history, points, unit.strain, lambda field: field)
+    stress = mean(points)
+    data = {"mises_Pa": mises(stress), "stress_Pa": six(stress).T}
+    if strain is not None:
+        data |= {"peeq": mean(peeq), "plastic_strain": six(mean(strain)).T}
     return FieldMesh(
         points=np.stack([x, np.zeros(x.size), z], axis=1) * unit.length,
         cells={"quad": mesh.t.T.copy()},
@@ -162,7 +171,7 @@ def history_table(model: ContactModel, steps: Sequence[Step], peeq_max: Strained
             "cycle": step.cycle,
             "step": step.number,
             "force_N": model.plan.force * model.share(state),
-            "approach_m": None if model.prescribed else state.approach * unit.displacement,
+            "approach_m": None if model.plan.prescribed else state.approach * unit.displacement,
             "contact_area_m2": model.contact_area(state),
             "p_max_Pa": model.largest_pressure(state),
             "peeq_max": peeq_max(state) if step.peeq_max is None else step.peeq_max,
@@ -212,7 +221,7 @@ def verdicts_of(
     model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
 ) -> list[verdict.Verdict]:
     """After each period that was finished: of the steps of a contact whose body yields."""
-    histories, periods = _periods_of(model, steps, judging)
+    histories, periods = _periods_of(model, steps)
     strain, volume = _yield_strain(model), model.body.weights.ravel() * model.scales.length**3 / model.part
     return [
         verdict.verdict_on(periods[:number], after.peeq.ravel(), strain, judging, volume=volume)
@@ -220,10 +229,10 @@ def verdicts_of(
     ]
 
 
-def _periods_of(
-    model: ContactModel, steps: Sequence[Step], judging: verdict.Judging
-) -> tuple[list[History], list[verdict.Period]]:
-    """The histories at the ends of finished periods, and what each period added."""
+def _periods_of(model: ContactModel, steps: Sequence[Step]) -> tuple[list[History], list[verdict.Period]]:
+    """The histories at the ends of finished periods, and what each period added; none without a verdict."""
+    if (judging := model.plan.judging) is None:
+        return [], []
     last = {
         target.cycle: target.number
         for target in model.plan.schedule.targets
@@ -245,8 +254,7 @@ def _periods_of(
 
 def loops_of(model: ContactModel, steps: Sequence[Step]) -> dict[str, list[Any]]:
     """Stress and plastic strain of three Gauss points over the last period, if judged."""
-    judging = model.plan.judging
-    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    judging, (histories, periods) = model.plan.judging, _periods_of(model, steps)
     if judging is None or len(periods) < 2 or len(periods) < model.plan.schedule.cycles // judging.period:
         return {}
     cycles, unit = verdict.last_period(judging, model.plan.schedule.cycles), model.scales
@@ -281,7 +289,7 @@ def element_fields(model: ContactModel, state: Equilibrium, steps: Sequence[Step
     if material.back_stresses:
         back = material.back_stress(state.history) * model.scales.pressure
         out[BACK_STRESS] = six((back * weights).sum(axis=-1) / weights.sum(axis=-1)).T
-    histories, periods = ([], []) if judging is None else _periods_of(model, steps, judging)
+    histories, periods = _periods_of(model, steps)
     if judging is None or not periods:
         return out
     for name, values in verdict.cell_fields(

@@ -42,9 +42,9 @@ class SphereContact(ContactProblem):
     def __init__(self, flat: ContactProblem, slope: float, hencky: Hencky | None):
         """flat: the same bodies under a gap that does not follow the deformation."""
         material = flat.material if hencky is None else hencky.small
-        super().__init__(flat.blocks, flat.gap0, material)
+        super().__init__(flat.solids, flat.gap0, material)
         self.slope, self.hencky = slope, hencky
-        solid = self.blocks[0].solid
+        solid = self.solids[0]
         self.radial = solid.boundary_dofs("surface", 0)[: self.gap0.size]
         self.radii = solid.basis.doflocs[0, self.radial]
         self.operator = GradientOperator(solid.basis, solid.weights)

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_reference.axisymmetric import model as flat
 from fem_reference.axisymmetric.planner import plan
-from fem_reference.axisymmetric.recovery import largest_peeq, stresses
+from fem_reference.axisymmetric.recovery import stresses
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step, climb
@@ -73,7 +73,7 @@ def build(scene: Scene, kind: str) -> flat.Model:
         small = model.problem.material
         if not isinstance(small, J2):
             curve = CurveInUnits(UNYIELDING, slope, model.scales.pressure)
-            small = J2(model.problem.blocks[0].elastic, curve, np.ones(model.body.weights.shape))
+            small = J2(model.body.elastic, curve, np.ones(model.body.weights.shape))
         hencky = Hencky(small, slope)
     return SphereModel(model.plan, SphereContact(model.problem, slope, hencky), model.surface)
 
@@ -90,5 +90,5 @@ def curve_of(model: flat.Model, steps: Sequence[Step]) -> Curve:
     force = np.array([state.force for state in states]) * slope**3
     radius = np.array([model.contact_radius(state) for state in states]) * slope
     approach = np.array([state.approach for state in states]) * slope**2
-    strain = np.array([largest_peeq(stresses(model, state))[0] for state in states])
+    strain = np.array([stresses(model, state).largest_peeq()[0] for state in states])
     return Curve(force, radius, approach, force / (np.pi * radius**2), strain)

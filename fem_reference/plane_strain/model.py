@@ -13,6 +13,7 @@ import numpy as np
 
 from fem_reference.common.arrays import Array, Bools
 from fem_reference.common.contact import Equilibrium
+from fem_reference.common.elasticity import Solid
 from fem_reference.common.model import ContactModel, material
 from fem_reference.common.quadrilaterals import PlaneSolid, edge_weights, tensor_mesh
 from fem_reference.common.recovery import edge_radius
@@ -46,7 +47,7 @@ class Model(ContactModel):
         return self.problem.share
 
     @property
-    def body(self) -> PlaneSolid:
+    def body(self) -> Solid:
         """The half-space of the scene."""
         return self.problem.solids[0]
 
@@ -137,7 +138,6 @@ def build(plan: PlaneStrainPlan) -> Model:
     candidates = slice(0 if plan.half else 1, surface.size - 1)
     problem = LineProblem(
         solids,
-        bodies.elastic,
         candidates,
         0.5 * surface[candidates] ** 2,
         length=plan.length,

@@ -28,12 +28,11 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres, splu
 
 from fem_reference.common.arrays import Array, Bools, Integers
-from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import flamant, stretched
 from fem_reference.common.linear import Counted, Kept
 from fem_reference.common.plasticity import History, Material
-from fem_reference.common.quadrilaterals import PlaneSolid, elimination_order
+from fem_reference.common.quadrilaterals import MatchedBodies, PlaneSolid, elimination_order
 from fem_reference.common.schedule import Load
 
 ACCURACY = 0.1
@@ -46,12 +45,11 @@ MOST = 120
 """Iterations of a linear solve; beyond, the body flows freely."""
 
 
-class LineProblem:
-    """One body, or two whose surface nodes match, each in its own (x, z into the body).
+class LineProblem(MatchedBodies):
+    """One body against a rigid surface, or two.
 
-    solids: the first may yield, with `material`; elastic: their constants; nodes: places in the surface of
-    the candidates, by x; gap0: (n_candidates,) their initial gap; length: of the contact along y, which
-    bears the forces of the loads; at half of it beside a line force the surface does not move along that.
+    length: of the contact along y, which bears the forces of the loads; at half of it beside a line force the
+    surface does not move along that.
     """
 
     anchored = False
@@ -59,32 +57,24 @@ class LineProblem:
     def __init__(
         self,
         solids: Sequence[PlaneSolid],
-        elastic: Sequence[Elastic],
         candidates: slice,
         gap0: Array,
         *,
         length: float,
         material: Material | None = None,
     ):
-        self.solids, self.elastic, self.gap0, self.material = tuple(solids), tuple(elastic), gap0, material
+        super().__init__(solids, candidates, gap0, material)
         half = "axis" in solids[0].basis.mesh.boundaries
         self.length, self.share = length, (0.5 if half else 1.0) / length
-        count = solids[0].size
-        self.size = count * len(solids)
-        # u_z and u_x of the candidates, (n_bodies, n_candidates)
-        first = np.arange(len(solids))[:, None] * count
-        self.normal, self.along = (
-            first + solids[0].boundary_dofs("surface", component)[candidates] for component in (1, 0)
-        )
         self.signs = np.array([1.0, -1.0])[: len(solids), None]
         self.far = [solids[0].boundary_dofs("far", component) for component in (0, 1)]
-        fixed = np.zeros(count, dtype=bool)
+        fixed = np.zeros(self.count, dtype=bool)
         fixed[np.concatenate(self.far)] = True
         if half:
             fixed[solids[0].boundary_dofs("axis", 0)] = True
         self.free = np.tile(~fixed, len(solids))
         self._factors = [_factor(solid, ~fixed) for solid in solids]
-        self._stretches = None if material is None else _stretches(solids[0], elastic[0], self.far)
+        self._stretches = None if material is None else _stretches(solids[0], self.far)
         self._columns: dict[tuple[np.intp, float], Array] = {}
 
     def with_gap(self, gap0: Array) -> LineProblem:
@@ -93,26 +83,21 @@ class LineProblem:
         other.gap0 = gap0
         return other
 
-    def body(self, u: Array, index: int) -> Array:
-        """Displacements of one body."""
-        count = self.solids[0].size
-        return u[index * count :][:count]
-
     def far_field(self, load: Load, history: History | None) -> Array:
         """Displacements (size,) on the outer boundary, zero elsewhere."""
         solid, force = self.solids[0], load.force / self.length
         parts = []
-        for elastic, sign in zip(self.elastic, self.signs[:, 0], strict=True):
+        for body, sign in zip(self.solids, self.signs[:, 0], strict=True):
             part = np.zeros(solid.size)
             for component, dofs in enumerate(self.far):
                 points = solid.basis.doflocs[:, dofs] - np.array([[load.x], [0.0]])
                 forces = force, sign * load.ratio * force
-                part[dofs] = flamant(forces, elastic, points, 0.5 * self.length)[component]
+                part[dofs] = flamant(forces, body.elastic, points, 0.5 * self.length)[component]
             parts.append(part)
         if history is not None and history.yielded and self._stretches is not None:
             for dofs, stretches in zip(self.far, self._stretches, strict=True):
                 xx, yy = (strain.ravel() for strain in history.plastic_strain[:2])
-                parts[0][dofs] += stretches @ (xx + self.elastic[0].poisson * yy)
+                parts[0][dofs] += stretches @ (xx + solid.elastic.poisson * yy)
         return np.concatenate(parts)
 
     def respond(self, u: Array, start: History | None) -> Response:
@@ -127,10 +112,6 @@ class LineProblem:
         forces = [first.internal_force(update.stress), *forces]
         tangent = first.softened(update.elements, update.loss)
         return Response(np.concatenate(forces), tangent, update.history, start=start)
-
-    def gap(self, u: Array, approach: float) -> Array:
-        """gap0 + sum of u_z - delta at the candidates."""
-        return self.gap0 + u[self.normal].sum(axis=0) - approach
 
     def reaction(self, response: Response) -> Array:
         """Whole force (n_candidates,) of the counter-body on each candidate, if that is in contact."""
@@ -170,7 +151,7 @@ class LineProblem:
         Without contact the approach is that of first touch. Raises NotDefiniteError.
         """
         solve, elastic, free = Counted(self.inverse), self.solids[0].stiffness, self.free
-        softer, count = response.tangent is not elastic, self.solids[0].size
+        softer, count = response.tangent is not elastic, self.count
         nodes, ratio = np.flatnonzero(active), load.ratio
         # increments from the multipliers and the approach that u has, so that all are small near equilibrium
         before = response.force[self.normal[0, active]]
@@ -244,7 +225,7 @@ def _krylov(apply: Callable[[Array], Array], right: Array, *, scale: float, targ
     return y
 
 
-def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> list[LinearOperator]:
+def _stretches(solid: PlaneSolid, far: Sequence[Integers]) -> list[LinearOperator]:
     """u_x and u_z of the outer boundary by e_xx + nu e_yy at the Gauss points: (n_far, n_points), by way of
     the columns of points.
     """
@@ -257,7 +238,7 @@ def _stretches(solid: PlaneSolid, elastic: Elastic, far: Sequence[Integers]) -> 
     out = []
     for component, dofs in enumerate(far):
         points = solid.basis.doflocs[:, dofs, None]
-        found = [stretched(elastic, points - np.array([shift, 0 * shift])[:, None]) for shift in shifts]
+        found = [stretched(solid.elastic, points - np.array([shift, 0 * shift])[:, None]) for shift in shifts]
         flat, deeper = (aslinearoperator(sum(u)[component]) for u in zip(*found, strict=True))
         out.append(flat @ areas[0] + deeper @ areas[1])
     return out

@@ -9,27 +9,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.common import recovery as common
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.elasticity import mises, on_grid
+from fem_reference.common.elasticity import on_grid
 from fem_reference.common.recovery import Peak, over_depth, plastic_fields
 from fem_reference.plane_strain.model import Model
 from sam.scene.yield_curve import Kinks
 
 
 @dataclass(frozen=True)
-class Stresses:
+class Stresses(common.Stresses):
     """Stress of the body in Pa, components (xx, yy, zz, xz), tension positive, and its plastic strain.
 
-    x (nx,), z (nz,): columns and rows of Gauss points in m; gauss: (4, nx, nz); peeq: (nx, nz) accumulated
-    plastic strain; plastic_strain: as gauss, tensor components, None for an elastic body; axis (4, nz),
+    x (nx,), z (nz,): columns and rows of Gauss points in m; stress: (4, nx, nz); peeq: (nx, nz) accumulated
+    plastic strain; plastic_strain: as stress, tensor components, None for an elastic body; axis (4, nz),
     axis_peeq (nz,): at x = 0; kinks: of the yield stress of a body that has yielded.
     """
 
     x: Array
     z: Array
-    gauss: Array
+    stress: Array
     peeq: Array
     axis: Array
     axis_peeq: Array
@@ -42,6 +43,21 @@ class Stresses:
         share = (place - self.x[k - 1]) / (self.x[k] - self.x[k - 1])
         out: Array = (1.0 - share) * values[..., k - 1, :] + share * values[..., k, :]
         return out
+
+    def largest(self, field: Array, even: Array) -> Peak:
+        """Largest value over the Gauss points (nx, nz) and the axis (nz,), and its depth in m (None if all
+        are zero), of `over_depth`.
+        """
+        i, k = np.unravel_index(np.argmax(field), field.shape)
+        row = field[i]
+        if even.max() > field.max():
+            row, k = even, even.argmax()
+        if row[k] == 0.0:
+            return 0.0, None
+        # at a point that has yielded the stress is bounded, and no parabola passes it
+        if field is not self.peeq and row is not even and self.peeq[i, k] > 0.0:
+            return float(row[k]), float(self.z[k])
+        return over_depth(self.z, row, int(k), self.kinks)
 
 
 def columns_of_points(model: Model) -> Integers:
@@ -78,30 +94,3 @@ def on_axis(x: Array, field: Array) -> Array:
     r1, r2 = x[first] ** 2, x[first + 1] ** 2
     out: Array = (near * r2 - far * r1) / (r2 - r1)
     return out
-
-
-def largest_mises(s: Stresses) -> Peak:
-    """Largest von Mises stress in Pa and its depth in m; of a point that has yielded as it is."""
-    q, axis = mises(s.gauss), mises(s.axis)
-    return largest(s, q, np.zeros_like(axis) if s.peeq.flat[q.argmax()] > 0.0 else axis)
-
-
-def largest_peeq(s: Stresses) -> Peak:
-    """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
-    return largest(s, s.peeq, s.axis_peeq)
-
-
-def largest(s: Stresses, field: Array, axis: Array) -> Peak:
-    """Largest value over the Gauss points (nx, nz) and the axis (nz,), and its depth in m (None if all are
-    zero), of `over_depth`.
-    """
-    i, k = np.unravel_index(np.argmax(field), field.shape)
-    row = field[i]
-    if axis.max() > field.max():
-        row, k = axis, axis.argmax()
-    if row[k] == 0.0:
-        return 0.0, None
-    # at a point that has yielded the stress is bounded, and no parabola passes it
-    if field is not s.peeq and row is not axis and s.peeq[i, k] > 0.0:
-        return float(row[k]), float(s.z[k])
-    return over_depth(s.z, row, int(k), s.kinks)

@@ -19,21 +19,13 @@ from fem_reference.plane_strain.model import Model, build
 from fem_reference.plane_strain.planner import plan
 from fem_reference.plane_strain.recovery import Stresses
 from fem_reference.plane_strain.track import LineTrack
-from sam.scene.result import AXIS, PLANE, FieldMesh, Table
+from sam.scene.result import AXIS, PLANE, Table
 
 
 def axis_table(state: str, s: Stresses) -> Table:
     """Stresses and strains below the origin."""
     xx, yy, zz, xz = s.axis
     return columns(AXIS, [state, s.z, s.axis_peeq, mises(s.axis), xx, yy, zz, 0.0, xz, 0.0])
-
-
-def surface_of(model: Model, equilibrium: Equilibrium) -> Surface:
-    """The surface nodes."""
-    dofs, bodies = model.body.boundary_dofs("surface", 1), range(len(model.problem.solids))
-    uz = np.sum([model.problem.body(equilibrium.u, i)[dofs] for i in bodies], axis=0)
-    gap = model.at(equilibrium.load).initial_gap + uz - equilibrium.approach
-    return Surface.of_section(model, equilibrium, model.surface, gap)
 
 
 def plastic_shear(model: Model, s: Stresses, x: Array | float) -> Array | float:
@@ -47,23 +39,7 @@ def plastic_shear(model: Model, s: Stresses, x: Array | float) -> Array | float:
 def plane_table(state: str, s: Stresses) -> Table:
     """Gauss points, column by column."""
     x, z = np.meshgrid(s.x, s.z, indexing="ij")
-    return columns(PLANE, [state, x.ravel(), z.ravel(), s.peeq.ravel(), mises(s.gauss).ravel()])
-
-
-def in_elements(model: Model, field: Array) -> Array:
-    """(k, n_elements) means over the four points of each element, of (k, 2 nx, 2 nz)."""
-    flat = np.empty((len(field), model.body.weights.size))
-    flat[:, recovery.columns_of_points(model).ravel()] = field.reshape(len(field), -1)
-    out: Array = flat.reshape(len(field), *model.body.weights.shape).mean(axis=-1)
-    return out
-
-
-def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh:
-    """The section: pressure and displacement at the corner nodes, stresses and strains in the elements."""
-    cells = {"stress": in_elements(model, s.gauss)}
-    if s.plastic_strain is not None:
-        cells |= {"peeq": in_elements(model, s.peeq[None]), "strain": in_elements(model, s.plastic_strain)}
-    return plane_mesh(model, equilibrium, model.surface, cells)
+    return columns(PLANE, [state, x.ravel(), z.ravel(), s.peeq.ravel(), mises(s.stress).ravel()])
 
 
 def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
@@ -95,14 +71,11 @@ METHOD = solution.Method(
     plan=plan,
     build=build,
     stresses=recovery.stresses,
-    largest_mises=recovery.largest_mises,
-    largest_peeq=recovery.largest_peeq,
-    largest_in_layer=lambda s, _coating: recovery.largest_mises(s),
     contact_quantities=_contact_quantities,
     axis=axis_table,
     plane=plane_table,
-    field_mesh=field_mesh,
-    surface=surface_of,
+    field_mesh=lambda model, state, _: plane_mesh(model, state, np.ones_like(model.body.weights)),
+    surface=Surface.of_section,
     discretisation=_discretisation,
     plastic_shear=plastic_shear,
     of_path=lambda model, *of_states: path_results(LineTrack(model), *of_states),

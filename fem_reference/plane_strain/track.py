@@ -45,8 +45,8 @@ class LineTrack(Track):
     def tables(self, state: Equilibrium, stresses: Stresses) -> dict[str, Table]:
         """Of the base; the section across the path is one line over depth, at y = 0."""
         s, (x, uz, _) = stresses, self.profile(state)
-        fields = np.stack([s.peeq, *s.gauss[[0, 1, 3]]])
-        xx, yy, zz, xz = stress = s.at(self.middle, s.gauss)
+        fields = np.stack([s.peeq, *s.stress[[0, 1, 3]]])
+        xx, yy, zz, xz = stress = s.at(self.middle, s.stress)
         middle, peeq = float(np.interp(self.middle, x, uz)), s.at(self.middle, s.peeq)
         cross = columns(CROSS, [0.0, s.z, middle, peeq, mises(stress), xx, yy, zz, 0.0, xz, 0.0])
         return {"track": track_table(self, (x, uz), (s.x, s.z), fields), "cross": cross}

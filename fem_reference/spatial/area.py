@@ -43,7 +43,10 @@ def area_of_spots(x: Array, y: Array, pressure: Array, gap: Array, *, clamped: f
 def edges(line: Array, pressure: Array, gap: Array, inside: Bools) -> Array:
     """(n - 1, m) places on `line` (n,) where contact ends along the first axis, else NaN."""
     places = np.full((line.size - 1, pressure.shape[1]), np.nan)
-    slant = slants(inside)
+    # cosine between the first axis and the normal of the edge, from the smoothed contact
+    along, across = np.gradient(ndimage.uniform_filter(inside.astype(float), size=3, mode="nearest"))
+    length = np.hypot(along, across)
+    slant = np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
     for first, second in ((0, 1), (1, 0)):  # in contact before the edge, after it
         here, there = slice(first, line.size - second), slice(second, line.size - first)
         i, j = np.nonzero(inside[here] & ~inside[there])
@@ -51,14 +54,6 @@ def edges(line: Array, pressure: Array, gap: Array, inside: Bools) -> Array:
         cosine = 0.5 * (slant[here][i, j] + slant[there][i, j])
         places[i, j] = start + step * crossing(pressure[here][i, j], gap[there][i, j], np.abs(step), cosine)
     return places
-
-
-def slants(inside: Bools) -> Array:
-    """Cosine between the first axis and the normal of the edge, from the smoothed contact."""
-    smooth = ndimage.uniform_filter(inside.astype(float), size=3, mode="nearest")
-    along, across = np.gradient(smooth)
-    length = np.hypot(along, across)
-    return np.divide(np.abs(along), length, out=np.ones_like(along), where=length > 0.0)
 
 
 def face(x: Array, y: Array, inside: Bools, along: tuple[Array, Array]) -> tuple[float, float]:

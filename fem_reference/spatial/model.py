@@ -44,7 +44,7 @@ class Model(ContactModel):
     @property
     def centred(self) -> bool:
         """Not of a rough body: nothing says where the middle is."""
-        return self.plan.kind == "smooth"
+        return self.plan.patch is None
 
     @property
     def part(self) -> float:
@@ -90,13 +90,16 @@ class Model(ContactModel):
         """The same with the counter-body at the place of a load."""
         return replace(self, place=(load.x, load.y))
 
+    def offsets(self, x: float, y: float) -> tuple[Array, Array]:
+        """(nx + 1, ny + 1) distances from a place along x and y; of a half none along y, as the other one has
+        the opposite sign.
+        """
+        along, across = np.meshgrid(self.lines.x - x, self.lines.y - y, indexing="ij")
+        return along, np.zeros_like(across) if self.lines.half else across
+
     def slope(self, load: Load, direction: Array) -> Array:
         """(nx + 1, ny + 1) slope of the gap along a direction, with the counter-body where a load has it."""
-        offsets = (line - at for line, at in zip((self.lines.x, self.lines.y), (load.x, load.y), strict=True))
-        x, y = np.meshgrid(*offsets, indexing="ij")
-        if self.lines.half:
-            y = np.zeros_like(y)  # the other half has the opposite sign
-        tx, ty = direction
+        (x, y), (tx, ty) = self.offsets(load.x, load.y), direction
         cx, cy = (self.scales.strain * curvature for curvature in self.plan.curvature)
         return tx * cx * x + ty * cy * y
 
@@ -108,14 +111,14 @@ class Model(ContactModel):
 
     def nodal_pressure(self, state: Equilibrium) -> Array:
         """(nx + 1, ny + 1) multipliers over the areas of the nodes; the given pressure where it is given."""
-        if self.prescribed:
+        if self.plan.prescribed:
             x, y = self.lines.x[:, None] - state.load.x, self.lines.y[None, :] - state.load.y
             return state.force * hertz_pressure(np.hypot(x, y))
         return self.on_surface(state.multipliers) / self.lines.areas
 
     def area(self, state: Equilibrium) -> float:
         """Area of the contact, of both halves, in the units of the model."""
-        if self.prescribed:
+        if self.plan.prescribed:
             return np.pi if state.force else 0.0
         return contact_area(*self._edge_fields(state), half=self.lines.half)
 
@@ -201,7 +204,6 @@ def build(plan: SpatialPlan) -> Model:
 
     problem = SlidingProblem(
         solid,
-        bodies.elastic[0],
         Candidates(surface.ravel()[candidates], gap0, plan.weights.ravel()[candidates], anchored=not moves),
         share=lines.share,
         material=material(bodies, plan.scales, solid),

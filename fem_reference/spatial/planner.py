@@ -13,7 +13,14 @@ import numpy as np
 from fem_reference.common.arrays import Array
 from fem_reference.common.bodies import coating_of, expected_radius, yielded_radius
 from fem_reference.common.hertz import Scales, contact_modulus, kinks_of, plastic_radius, scales
-from fem_reference.common.mesh_lines import Lines, Sizes, coated_depths, grow, two_sided, uniform_then_growing
+from fem_reference.common.mesh_lines import (
+    Lines,
+    Sizes,
+    coated_depths,
+    two_sided,
+    uniform_then_growing,
+    widened,
+)
 from fem_reference.common.plan import Plan, planned, slide, stages_of
 from fem_reference.common.refusals import box_problems, coating_problems, problems_of, refuse
 from sam.scene.result import LeftOut, Stage
@@ -51,11 +58,6 @@ class SpatialPlan(Plan):
     patch: Patch | None = None
 
     @property
-    def kind(self) -> str:
-        """The kind of body, "smooth" or "rough"."""
-        return "smooth" if self.patch is None else "rough"
-
-    @property
     def coating_layers(self) -> int | None:
         """Layers of elements above the lower face of the coating."""
         return None if self.interface is None else int(np.searchsorted(self.lines.z, self.interface))
@@ -69,11 +71,14 @@ class SpatialPlan(Plan):
 def plan(scene: Scene) -> SpatialPlan:
     """What the three-dimensional model solves of a scene; UnsupportedScene as of `check`."""
     check(scene)
-    patch = None if scene.patch_surface is None else choose_patch(scene)
-    if patch is None:
+    patch: Patch | None = None
+    if scene.patch_surface is None:
         units, curvature = scales(scene), curvatures(scene)
         lines, core = choose_lines(scene)
     else:
+        (cells, sides), radii = scene.patch, stated(scene.counterbody).radii  # of a file, or of the scene
+        relief = scene.grid is not None and scene.grid.border == "relief"
+        patch = Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii, scene.counter_strip)
         units, curvature = rough_scales(scene, patch), (0.0, 0.0)
         lines = rough_lines(patch, units.length, scene.fem.box, marks=kinks_of(scene, units))
         x, y = (line / units.length for line in patch.centres)
@@ -245,14 +250,6 @@ class Patch:
         return x, y
 
 
-def choose_patch(scene: Scene) -> Patch:
-    """The patch of a rough scene: cells and sides of a file, or those that the scene gives."""
-    cells, sides = scene.patch
-    relief = scene.grid is not None and scene.grid.border == "relief"
-    radii = stated(scene.counterbody).radii
-    return Patch(scene.surface, scene.counter_surface, cells, sides, relief, radii, scene.counter_strip)
-
-
 def rough_scales(scene: Scene, patch: Patch) -> Scales:
     """Units of a rough contact: half the longer side; the approach, or what makes the force 4/3."""
     modulus, length = contact_modulus(scene), 0.5 * max(patch.sides)
@@ -269,13 +266,8 @@ def rough_lines(patch: Patch, unit: float, box: float, *, marks: Sequence[float]
     unit: of length, in m; marks: depths in this unit that are planes too, see `uniform_then_growing`.
     Elements next to the surface are as high as the shorter side of a cell, or lower above a mark.
     """
-    x, y = (_widened(line / unit, box) for line in patch.centres)
+    cores = (line / unit for line in patch.centres)
+    x, y = (widened(core, core[1] - core[0], box, SIDE_GROWTH) for core in cores)
     size = min(side / n for side, n in zip(patch.sides, patch.cells, strict=True)) / unit
     depth = UNIFORM_DEPTH * (min(patch.cells) - 1) * size
     return Lines(x, y, uniform_then_growing(size, depth, box, growth=DEPTH_GROWTH, marks=marks), half=False)
-
-
-def _widened(core: Array, box: float) -> Array:
-    """Equidistant lines continued by growing ones over `box` beyond both ends."""
-    outside = grow(0.0, box, core[1] - core[0], SIDE_GROWTH)
-    return np.concatenate([core[0] - outside[::-1], core, core[-1] + outside])

@@ -25,7 +25,6 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from fem_reference.common.arrays import Array, Bools, Integers
-from fem_reference.common.bodies import Elastic
 from fem_reference.common.contact import NotDefiniteError, Response
 from fem_reference.common.far_field import coating_effect, slanted
 from fem_reference.common.linear import Counted, Kept
@@ -59,7 +58,7 @@ class Candidates:
 class SlidingProblem:
     """The body of a contact with friction; see the module.
 
-    elastic: constants of the far field, in the units of the caller; share: modelled part of every force;
+    share: modelled part of every force;
     material: None if elastic; tractions: the nodal forces (size,) of prescribed tractions, which then take
     the place of contact.
     """
@@ -67,14 +66,13 @@ class SlidingProblem:
     def __init__(
         self,
         solid: HexSolid,
-        elastic: Elastic,
         candidates: Candidates,
         *,
         share: float,
         material: Material | None = None,
         tractions: NodalForces | None = None,
     ):
-        self.solid, self.elastic, self.share, self.material = solid, elastic, share, material
+        self.solid, self.share, self.material = solid, share, material
         self.tractions, self.size, self.mesh = tractions, solid.size, solid.basis.mesh
         self.gap0, self.weights, self.anchored = candidates.gap0, candidates.weights, candidates.anchored
         self.carried = candidates.carried
@@ -100,7 +98,7 @@ class SlidingProblem:
         u, (x, y) = np.zeros(self.size), (load.x, load.y) if self.carried else (0.0, 0.0)
         offset = self.mesh.p[:, self.far] - np.array([[x], [y], [0.0]])
         forces = load.force, load.ratio * load.force
-        values = slanted(forces, self.elastic, offset)
+        values = slanted(forces, self.solid.elastic, offset)
         if self.solid.coating is not None:
             effect = self._coating_effect((x, y), offset, bool(load.ratio))
             values += np.einsum("f,fcn->cn", forces, effect)
@@ -111,7 +109,7 @@ class SlidingProblem:
         """`coating_effect` at `place`, computed once for each."""
         key = *place, sliding
         if key not in self._coating_effects and self.solid.coating is not None:
-            effect = coating_effect(self.solid.coating, self.elastic, offset, sliding=sliding)
+            effect = coating_effect(self.solid.coating, self.solid.elastic, offset, sliding=sliding)
             self._coating_effects[key] = effect
         return self._coating_effects[key]
 

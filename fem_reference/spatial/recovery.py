@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from fem_reference.common import recovery as common
 from fem_reference.common.arrays import Array, Integers
 from fem_reference.common.bodies import EVEN
 from fem_reference.common.contact import Equilibrium
-from fem_reference.common.elasticity import mises
 from fem_reference.common.recovery import Peak, continued, over_depth, parabola_peak, plastic_fields
 from fem_reference.spatial.model import Model
 from sam.scene.section import stated
@@ -28,7 +28,7 @@ LEVELS = 3
 
 
 @dataclass(frozen=True)
-class Stresses:
+class Stresses(common.Stresses):
     """Means of the elements, the values at their centres up to second order.
 
     x (nx,), y (ny,), z (nz,): centres in m; stress: (6, nx, ny, nz) in Pa, order xx yy zz yz xz xy; peeq:
@@ -52,11 +52,43 @@ class Stresses:
     interface: float | None = None
     kinks: Kinks = EVEN
 
+    @property
+    def even(self) -> tuple[Array, Array]:
+        """Stress and accumulated plastic strain in the plane y = 0."""
+        return self.plane, self.plane_peeq
+
     def layer(self, coating: bool) -> Stresses:
         """The part above the interface, or below: the elements, without the faces."""
         k = slice(None, self.coating_layers) if coating else slice(self.coating_layers, None)
         fields: dict[str, Any] = {name: getattr(self, name)[..., k] for name in FIELDS}
         return Stresses(self.x, self.y, self.z[k], **fields, kinks=self.kinks)
+
+    def largest_in_layer(self, coating: bool) -> Peak:
+        """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
+        part, interface = self.layer(coating), stated(self.interface)
+        if not part.peeq.any():
+            for depth in (0.0, interface) if coating else (interface,):
+                part = with_face(part, depth)
+        return part.largest_mises()
+
+    def largest(self, field: Array, even: Array) -> Peak:
+        """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if
+        all are zero).
+
+        In the plane it is refined by parabolas through the largest value and its neighbours along z and x.
+        Without a coating it is that of the first layer of elements next to the surface, and at a kink of the
+        yield stress that of the element above or below.
+        """
+        i, k = np.unravel_index(np.argmax(even), even.shape)
+        peak = even[i, k]
+        if field.max() > peak:
+            return float(field.max()), float(self.z[np.unravel_index(np.argmax(field), field.shape)[2]])
+        if peak == 0.0:
+            return 0.0, None
+        value, depth = over_depth(self.z, even[i], int(k), self.kinks)
+        if 0 < i < self.x.size - 1:
+            value += parabola_peak(self.x[i - 1 : i + 2], even[i - 1 : i + 2, k])[0] - float(peak)
+        return value, depth
 
 
 def stresses(model: Model, state: Equilibrium) -> Stresses:
@@ -125,46 +157,3 @@ def at_zero(values: Array, line: Array, axis: int) -> Array:
         return np.take(values, zero - 1, axis=axis)
     places = [zero - 2, zero - 1, zero, zero + 1] if zero else [1, 0, 0, 1]
     return np.moveaxis(np.take(values, places, axis=axis), axis, -1) @ MIDPOINT
-
-
-def largest_mises(s: Stresses) -> Peak:
-    """Largest von Mises stress in Pa and its depth in m; of an element that has yielded as it is."""
-    if s.coating_layers is not None:
-        return max((largest_in_layer(s, coating) for coating in (True, False)), key=lambda peak: peak[0])
-    q, plane = mises(s.stress), mises(s.plane)
-    return largest(s, q, np.zeros_like(plane) if s.peeq.flat[q.argmax()] > 0.0 else plane)
-
-
-def largest_in_layer(s: Stresses, coating: bool) -> Peak:
-    """Largest von Mises stress in Pa of the coating or below it, with its faces, and depth in m."""
-    part, interface = s.layer(coating), stated(s.interface)
-    if not part.peeq.any():
-        for depth in (0.0, interface) if coating else (interface,):
-            part = with_face(part, depth)
-    return largest_mises(part)
-
-
-def largest_peeq(s: Stresses) -> Peak:
-    """Largest accumulated plastic strain and its depth in m, as `largest_mises`."""
-    parts = [s] if s.coating_layers is None else [s.layer(coating) for coating in (True, False)]
-    return max((largest(part, part.peeq, part.plane_peeq) for part in parts), key=lambda peak: peak[0])
-
-
-def largest(s: Stresses, field: Array, plane: Array) -> Peak:
-    """Largest value over elements (nx, ny, nz) and the plane y = 0 (nx, nz), and its depth in m (None if
-    all are zero).
-
-    In the plane it is refined by parabolas through the largest value and its neighbours along z and x.
-    Without a coating it is that of the first layer of elements next to the surface, and at a kink of the
-    yield stress that of the element above or below.
-    """
-    i, k = np.unravel_index(np.argmax(plane), plane.shape)
-    peak = plane[i, k]
-    if field.max() > peak:
-        return float(field.max()), float(s.z[np.unravel_index(np.argmax(field), field.shape)[2]])
-    if peak == 0.0:
-        return 0.0, None
-    value, depth = over_depth(s.z, plane[i], int(k), s.kinks)
-    if 0 < i < s.x.size - 1:
-        value += parabola_peak(s.x[i - 1 : i + 2], plane[i - 1 : i + 2, k])[0] - float(peak)
-    return value, depth

@@ -23,6 +23,7 @@ from fem_reference.spatial.model import Model, surface_nodes
 from fem_reference.spatial.planner import Patch, SpatialPlan
 from fem_reference.spatial.problem import Candidates, SlidingProblem
 from sam.scene.result import COUNTER_HEIGHT, SURFACE, Table
+from sam.scene.section import stated
 from sam.scene.surface import Surface, heights, mean_deviation, with_relief
 
 OVERLAP_LENGTH = 0.75 * np.pi
@@ -51,7 +52,7 @@ class RoughModel(Model):
 
     def placed(self, load: Load) -> Self:
         """The same with the counter-body, and its summits, at the place of a load."""
-        moved, patch = super().placed(load), of_rough(self.plan)
+        moved, patch = super().placed(load), stated(self.plan.patch)
         if patch.counter is None:
             return moved
         return replace(
@@ -60,7 +61,7 @@ class RoughModel(Model):
 
     def slope(self, load: Load, direction: Array) -> Array:
         """(nx + 1, ny + 1) slope of the gap along a direction: of the counter-body and of its summits."""
-        patch, (tx, ty) = of_rough(self.plan), direction
+        patch, (tx, ty) = stated(self.plan.patch), direction
         place, (x, y) = in_metres(self.plan, (load.x, load.y)), patch.centres
         rx, ry = patch.radii or (np.inf, np.inf)
         slope = tx * (x[:, None] - place[0]) / rx + ty * (y[None, :] - place[1]) / ry
@@ -109,7 +110,7 @@ class RoughModel(Model):
         gap = self.on_surface(state.gap)[np.isfinite(self.initial_gap)]
         return {
             "contact_spots": float(ndimage.label(self.nodal_pressure(state) > 0.0)[1]),
-            "contact_share": self.contact_area(state) / float(np.prod(of_rough(self.plan).sides)),
+            "contact_share": self.contact_area(state) / float(np.prod(stated(self.plan.patch).sides)),
             "mean_gap_m": float(gap.mean()) * self.scales.displacement,
         }
 
@@ -143,7 +144,7 @@ def overlap(gap: Array, areas: Array, depth: float) -> tuple[float, float]:
 
 def build(plan: SpatialPlan) -> RoughModel:
     """Mesh, body, material and contact candidates of the plan of a rough body."""
-    lines, bodies, patch = plan.lines, plan.bodies, of_rough(plan)
+    lines, bodies, patch = plan.lines, plan.bodies, stated(plan.patch)
     x, y = plan.sliding.places[0] if plan.sliding.moves else (0.0, 0.0)
     start = float(x), float(y)
     solid = HexSolid(block(lines), bodies.elastic[0])
@@ -164,16 +165,9 @@ def build(plan: SpatialPlan) -> RoughModel:
         carried=patch.radii is not None,
     )
     problem = SlidingProblem(
-        solid, bodies.elastic[0], touching, share=lines.share, material=material(bodies, plan.scales, solid)
+        solid, touching, share=lines.share, material=material(bodies, plan.scales, solid)
     )
     return RoughModel(plan, problem, surface, candidates, body, opposite, float(inside.min()), place=start)
-
-
-def of_rough(plan: SpatialPlan) -> Patch:
-    """The patch of the plan of a rough body."""
-    if plan.patch is None:
-        raise ValueError("the plan of a smooth body: it has no patch")
-    return plan.patch
 
 
 def heights_of(patch: Patch, surface: Surface) -> Array:
@@ -197,7 +191,7 @@ def in_metres(plan: SpatialPlan, place: Place) -> Place:
 
 def between(plan: SpatialPlan, both: Array, place: Place) -> Array:
     """(nx, ny) in m: the counter-body at a place less the heights of both bodies."""
-    patch, (x0, y0), inside = of_rough(plan), in_metres(plan, place), -both
+    patch, (x0, y0), inside = stated(plan.patch), in_metres(plan, place), -both
     x, y = patch.centres
     if patch.radii is not None:
         rx, ry = patch.radii
@@ -226,6 +220,6 @@ def surface_table(state: str, model: RoughModel, equilibrium: Equilibrium) -> Ta
     friction = np.where(pressure > 0.0, np.abs(model.ratio(equilibrium)), np.nan)
     place = [state, x[inside], y[inside], model.heights.ravel()]
     table = columns(SURFACE, [*place, pressure[inside], 0.0, friction[inside]])
-    if of_rough(model.plan).counter is not None:
+    if stated(model.plan.patch).counter is not None:
         table[COUNTER_HEIGHT] = model.at(equilibrium.load).opposite.ravel()
     return table

@@ -19,7 +19,7 @@ from fem_reference.common.far_field import words_of
 from fem_reference.common.solution import Quantities
 from fem_reference.common.tables import Surface, columns, stacked
 from fem_reference.common.track import path_results
-from fem_reference.spatial import recovery
+from fem_reference.spatial import model as smooth, recovery
 from fem_reference.spatial.model import Model
 from fem_reference.spatial.planner import SpatialPlan, plan
 from fem_reference.spatial.recovery import Stresses, at_zero, with_interface
@@ -27,10 +27,8 @@ from sam.scene.result import AXIS, CUT, PLANE, FieldMesh, Table
 
 TRACK = "fem_reference.spatial.track"
 """Where the track of a counter-body is measured that moves."""
-MODULES = {"smooth": "fem_reference.spatial.model", "rough": "fem_reference.spatial.rough"}
-"""Where the model of each kind of body is built; a smooth one does without the other."""
-
-
+ROUGH = "fem_reference.spatial.rough"
+"""Where the model of a rough body is built; a smooth one does without."""
 VTK_CORNERS = [0, 3, 6, 2, 1, 5, 7, 4]
 """Corners of a hexahedron of scikit-fem in the order of VTK; skfem.io.meshio has it too, and loads meshio."""
 
@@ -48,7 +46,7 @@ def surface_of(model: Model, equilibrium: Equilibrium) -> Surface:
     x, y = (line * unit.length for line in (model.lines.x, model.lines.y))
     pressure = model.nodal_pressure(equilibrium) * unit.pressure
     ratio = model.ratio(equilibrium) if model.plan.sliding.coefficient else None
-    gap = np.where(model.prescribed, np.nan, gap * unit.displacement)
+    gap = np.where(model.plan.prescribed, np.nan, gap * unit.displacement)
     return Surface(x, y, pressure, ratio, gap, u * unit.displacement)
 
 
@@ -111,8 +109,8 @@ def field_mesh(model: Model, equilibrium: Equilibrium, s: Stresses) -> FieldMesh
 
 def build(plan: SpatialPlan) -> Model:
     """The model of a plan, smooth or rough."""
-    model: Model = import_module(MODULES[plan.kind]).build(plan)
-    return model
+    made: Model = smooth.build(plan) if plan.patch is None else import_module(ROUGH).build(plan)
+    return made
 
 
 def _contact_quantities(model: Model, peak: Equilibrium) -> Quantities:
@@ -130,7 +128,7 @@ def _further(
     """A section through the largest pressure where that is not at the origin, and the tables of a patch."""
     (shown, first), *_ = states.items()
     leaves = bool(model.plan.sliding.places.any())  # the origin
-    cut = first.force and (leaves or model.plan.kind == "rough")
+    cut = first.force and (leaves or model.plan.patch is not None)
     out = {"cut": cut_table(shown, model, first, fields[shown])} if cut else {}
     return out | model.tables_of_patch(states)
 
@@ -142,7 +140,7 @@ def _discretisation(model: Model) -> dict[str, object]:
     return {
         "element": "8-node hexahedron, mean dilatation, 2 x 2 x 2 Gauss points",
         "symmetry": "half, y >= 0" if lines.half else "none",
-        "cells_per_radius": plan.fine_cells_per_radius if plan.kind == "smooth" else None,
+        "cells_per_radius": plan.fine_cells_per_radius if plan.patch is None else None,
         "reference_radius_m": length,
         "h_m": float(np.diff(lines.x).min()) * length,
         "box_m": float(lines.z[-1]) * length,
@@ -156,9 +154,6 @@ METHOD = solution.Method(
     plan=plan,
     build=build,
     stresses=recovery.stresses,
-    largest_mises=recovery.largest_mises,
-    largest_peeq=recovery.largest_peeq,
-    largest_in_layer=recovery.largest_in_layer,
     contact_quantities=_contact_quantities,
     axis=axis_table,
     plane=plane_table,

@@ -48,30 +48,17 @@ class Track(track.Track):
     def pressing(self, state: Equilibrium) -> tuple[Array, Array, Array, Array]:
         """Of the base; below a plane the distance is from the origin."""
         model, (tx, ty) = self.model, self.direction
-        about = (0.0, 0.0) if self.plane else (state.load.x, state.load.y)
-        offsets = (line - at for line, at in zip((model.lines.x, model.lines.y), about, strict=True))
-        x, y = np.meshgrid(*offsets, indexing="ij")
-        if model.lines.half:
-            y = np.zeros_like(y)  # the other half has the opposite sign
+        x, y = model.offsets(*((0.0, 0.0) if self.plane else (state.load.x, state.load.y)))
         slope = model.slope(state.load, self.direction)
         forces = model.on_surface(state.multipliers) / model.part
         return forces, slope, tx * model.ratio(state), tx * x + ty * y
 
-    def surface(self, state: Equilibrium) -> Array:
-        """(nx + 1, ny + 1) displacement of the surface in m."""
-        dofs = self.model.body.basis.nodal_dofs[2][self.model.surface]
-        return state.u[dofs] * self.model.scales.displacement
-
-    def across(self, values: Array) -> Array:
-        """(ny + 1,) of those at the nodes, in the middle of the steady part."""
-        x = self.model.lines.x * self.model.scales.length
-        return np.array([np.interp(self.middle, x, column) for column in values.T])
-
     def profile(self, state: Equilibrium) -> tuple[Array, Array, Array]:
         """Of the base."""
-        uz, lines = self.surface(state), self.model.lines
-        along = np.array([np.interp(self.y, lines.y, row) for row in uz])
-        return lines.x * self.model.scales.length, along, self.across(uz)
+        model, lines = self.model, self.model.lines
+        uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
+        x, along = lines.x * model.scales.length, [np.interp(self.y, lines.y, row) for row in uz]
+        return x, np.array(along), np.array([np.interp(self.middle, x, column) for column in uz.T])
 
     def strain(self, state: Equilibrium) -> tuple[Array, Array]:
         """Of the base, in the elements (nx, ny, nz)."""

@@ -25,7 +25,7 @@ from fem_reference.common.elasticity import on_grid
 from fem_reference.common.loading import Progressed, Step, follow
 from fem_reference.common.plasticity import History
 from fem_reference.spatial.planner import plan
-from fem_reference.spatial.recovery import largest_peeq, stresses
+from fem_reference.spatial.recovery import stresses
 from fem_reference.spatial.rough import RoughModel, build, on_mesh, surface_table
 from fem_reference.spatial.solution import plane_table
 from sam.scene.result import Table
@@ -60,15 +60,6 @@ class Limits:
     roof_falls: bool = False
 
 
-def limits_of(scene: Scene) -> Limits:
-    """The strain limits of a scene with [wear]."""
-    wear, plasticity = stated(scene.wear), stated(scene.body.plasticity)
-    falls = wear.roof == "falls"
-    if wear.strain_limit_layer is None or plasticity.layer_thickness is None:
-        return Limits(wear.strain_limit, wear.strain_limit, 0.0, falls)
-    return Limits(wear.strain_limit, wear.strain_limit_layer, plasticity.layer_thickness, falls)
-
-
 def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCycle]]:
     """The cycles of a rough scene with [wear], solved with removal at the end of each of them, for each of
     some ways to remove; the load of the first cycle, which they have in common, is solved once.
@@ -79,7 +70,10 @@ def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCy
     cannot represent, ValueError where a cycle does not converge, or all that the mesh has below a node is
     above the limit.
     """
-    limits = limits_of(scene)
+    wear, thickness = stated(scene.wear), stated(scene.body.plasticity).layer_thickness
+    layer = None if thickness is None else wear.strain_limit_layer
+    of_layer = (wear.strain_limit, 0.0) if layer is None else (layer, stated(thickness))
+    limits = Limits(wear.strain_limit, *of_layer, wear.roof == "falls")
     body = build(plan(scene.model_copy(update={"wear": None})))
     first: list[Step] = []
     found = []
@@ -99,7 +93,7 @@ def worn_cycles(scene: Scene, *ways: Sequence[Array] | None) -> list[list[WornCy
             model, state = lowered(model, state, depth)
             uz = state.u[model.body.basis.nodal_dofs[2][model.surface]] * model.scales.displacement
             moved = uz[np.isfinite(model.initial_gap)].reshape(worn.shape)
-            cycles.append(WornCycle(tables, largest_peeq(fields)[0], worn, moved))
+            cycles.append(WornCycle(tables, fields.largest_peeq()[0], worn, moved))
         found.append(cycles)
     return found
 

@@ -151,8 +151,8 @@ def test_far_field_of_plastic_strain():
         state = steps[-1].state
         assert steps[-1].unloads and not state.active.any() and state.residual < 1e-9
         s, height = stresses(model, state), np.repeat(np.diff(model.plan.z), 2) / 2.0
-        forces = s.gauss[0] @ height / (np.abs(s.gauss[0]) @ height)
-        found.append((np.abs(forces[s.x < 2.0 * model.scales.length]).max(), mises(s.gauss).max()))
+        forces = s.stress[0] @ height / (np.abs(s.stress[0]) @ height)
+        found.append((np.abs(forces[s.x < 2.0 * model.scales.length]).max(), mises(s.stress).max()))
     (near, coarse), (far, fine) = found
     assert far < 0.5 * near < 0.05 and coarse == pytest.approx(fine, rel=0.01)
 

@@ -137,7 +137,7 @@ def test_a_layer_that_yielded_is_read_at_its_elements():
     assert np.array_equal(face.stress[..., 0], part.stress[..., 0]) and face.z[0] == s.interface
     assert not np.array_equal(recovery.with_face(part, s.interface).stress[..., 0], part.stress[..., 0])
     both = replace(s, peeq=np.full_like(s.peeq, 1e-4))
-    assert recovery.largest_in_layer(both, coating=False)[0] == mises(part.stress).max()
+    assert both.largest_in_layer(False)[0] == mises(part.stress).max()
 
 
 def test_a_field_that_is_quadratic_over_depth_is_exact_at_a_face():

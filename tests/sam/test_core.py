@@ -357,7 +357,7 @@ def test_recovered_plastic_strain_is_a_tensor_in_units_of_one():
     factors = np.array([1, 1, 1, 0.5])[:, None, None] * 2e-3
     assert found.plastic_strain == pytest.approx(factors * strain, rel=1e-12)
     assert found.peeq == pytest.approx(np.full((1, 4), 6e-3), rel=1e-12)
-    assert found.gauss == pytest.approx(np.full((4, 1, 4), 5e9), rel=1e-12)
+    assert found.stress == pytest.approx(np.full((4, 1, 4), 5e9), rel=1e-12)
     assert found.axis_z == pytest.approx([1e-6, 2e-6], rel=1e-9, abs=0.0)
     assert found.axis == pytest.approx(np.outer([5e9, 5e9, 5e9, 0.0], [1.0, 1.0]), rel=1e-12)
 
@@ -386,8 +386,8 @@ def test_no_parabola_goes_across_a_kink_of_the_yield_stress(rows, most, place):
     space = SimpleNamespace(kinks=kinks, x=np.zeros(1), z=z)
     snapshot = SimpleNamespace(mises=field[:, None], flowed=None)
     for found in (
-        recovery.largest(flat, 0 * field, field),
-        spatial.largest(space, 0 * field[None, None], field[None]),
+        recovery.Stresses.largest(flat, 0 * field, field),
+        spatial.Stresses.largest(space, 0 * field[None, None], field[None]),
         tables.largest_mises(z, snapshot, kinks)[::-1],
     ):
         assert found == (pytest.approx(most, rel=1e-12), pytest.approx(place, rel=1e-12))
@@ -433,5 +433,5 @@ def test_what_has_yielded_gives_its_own_stress(strained):
     field[2], plane[2] = -1.0, -1.2
     last = plane, np.zeros((2, 2)), np.zeros((6, 2)), empty, None
     space = spatial.Stresses(place, place[:1], place, field, peeq, *last)
-    for found in (recovery.largest_mises(flat)[0], spatial.largest_mises(space)[0]):
+    for found in (flat.largest_mises()[0], space.largest_mises()[0]):
         assert found == pytest.approx(1.0 if strained else 1.2, rel=1e-12)

@@ -10,9 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel
-
-from sam.scene import Grid, Progress, Result, Scene, printable, read_scene
+from sam.scene import Progress, Result, Scene, printable, read_scene
 from verification.figures import space
 from verification.judging import Measured as Measured
 from verification.rows import LEVELS as LEVELS, CaseFile
@@ -20,6 +18,7 @@ from verification.runs.files import plain, write_atomically, write_run
 from verification.runs.models import FEM as FEM, FEM_3D as FEM_3D, FEM_LINE as FEM_LINE, SAM as SAM
 from verification.runs.provenance import collect, without_places
 from verification.runs.store import Reuse, Store, solve_or_reuse
+from verification.scenes import with_keys as with_keys
 from verification.text.console import number as number
 
 if TYPE_CHECKING:  # loaded only where something is drawn or tabulated
@@ -279,14 +278,6 @@ class Context:
         return seen, []
 
 
-def with_keys(scene: BaseModel, section: str, **keys) -> Any:
-    """The scene with other keys in one of its sections, which may be one in another: body.coating."""
-    name, _, inner = section.partition(".")
-    old = getattr(scene, name)
-    new = with_keys(old, inner, **keys) if inner else old.model_copy(update=keys)
-    return scene.model_copy(update={name: new})
-
-
 def with_body(scene: Scene, **keys) -> Scene:
     """The scene with other keys in its [body]."""
     return with_keys(scene, "body", **keys)
@@ -294,7 +285,7 @@ def with_body(scene: Scene, **keys) -> Scene:
 
 def with_grid(scene: Scene, **keys) -> Scene:
     """The scene with other keys in its [grid]."""
-    return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
+    return with_keys(scene, "grid", **keys)
 
 
 def with_loading(scene: Scene, **keys) -> Scene:

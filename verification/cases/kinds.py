@@ -5,6 +5,7 @@ both models (`verification.quantities.Solved`). Titles and captions follow from 
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -347,7 +348,12 @@ def _new_strains(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
         yield Plot(drawing, f"new-strain-{variant}", "What each pass adds", text)
 
 
-_PUNCH = (("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa"))
+_punch = partial(
+    *(_along, ("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa")),
+    name="profiles",
+    title="Pressure, surface and stress under the centre",
+    until=1.5,
+)
 KINDS: Mapping[str, Callable[[Solved], Plot]] = {
     "pressure-maps": _maps("contact pressure over x/a and y/a", "pressure-maps", _pressure_maps),
     "mises-maps": _maps("von Mises stress in the plane y = 0", "mises-maps", _mises_maps),
@@ -364,16 +370,8 @@ KINDS: Mapping[str, Callable[[Solved], Plot]] = {
         title="Stresses under the centre",
         until=2.0,
     ),
-    "punch": _along(
-        *_PUNCH, name="profiles", title="Pressure, surface and stress under the centre", until=1.5
-    ),
-    "rounded-punch": _along(
-        *_PUNCH,
-        name="profiles",
-        title="Pressure, surface and stress under the centre",
-        until=1.5,
-        pressed=1.2,
-    ),
+    "punch": _punch(),
+    "rounded-punch": _punch(pressed=1.2),
     "exact-maps": _exact_maps,
     "plastic-axis": _plastic_axis,
     "residual-surface": _residual_surface,

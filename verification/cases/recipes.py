@@ -98,11 +98,6 @@ def with_layer(scene: Scene, law: Mapping[str, str | float]) -> Scene:
     return with_body(scene, plasticity=Plasticity(**content))
 
 
-def cells_a_side(scene: Scene, n: int) -> Scene:
-    """A grid of n by n cells over the extent of the scene."""
-    return with_grid(scene, cells=(n, n))
-
-
 def depths_over_radius(scene: Scene, depths: Sequence[float]) -> Scene:
     """Output depths, given over the radius of the elastic contact."""
     a = contact_of(scene).contact_radius
@@ -307,7 +302,7 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     "layer": with_layer,
     "p0-over-yield": at_ratio,
     "resolution": resolved_at,
-    "cells": cells_a_side,
+    "cells": lambda scene, n: with_grid(scene, cells=(n, n)),
     "depths-over-radius": depths_over_radius,
     "elements": with_mesh,
     "grid-over-rounded-punch": grid_over_rounded_punch,

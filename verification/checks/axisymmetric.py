@@ -71,7 +71,7 @@ class Finite(Formed):
     """Of the axisymmetric model: (4, n_elements, n_points), components rr, tt, zz, rz."""
 
     def __init__(self, scene: Scene, model: Model, step: Step):
-        self.basis = model.problem.blocks[0].solid.basis
+        self.basis = model.problem.solids[0].basis
         field = self.basis.interpolate(model.problem.body(step.state.u, 0))
         self.r, self.z = np.asarray(self.basis.global_coordinates())
         super().__init__(scene, model, step, self.z)

@@ -382,34 +382,31 @@ def _read_mapped(path: Path, radius: float) -> Tables:
 
 def _fields(mapping: MeshMapping, mesh: UnstructuredGrid, path: Path) -> dict[str, tuple[np.ndarray, bool]]:
     """Column of a table -> its values in SI and the axes of the scene, and whether they are of nodes."""
-    wanted = dict.fromkeys(("pressure", "mises", "peeq"), 1) | {"displacement": 3}
-    wanted["stress"] = len(mapping.components or VTK)
-    found, faults = {}, []
-    for key, width in wanted.items():
+    widths = {"displacement": 3, "stress": len(mapping.components or VTK)}
+    pascal = float(in_unit(f"1 {mapping.stress_unit}", "Pa"))
+    scalars = {"pressure": ("p_Pa", pascal), "mises": ("mises_Pa", pascal), "peeq": ("peeq", 1.0)}
+    fields: dict[str, tuple[np.ndarray, bool]] = {}
+    faults = []
+    for key in (*scalars, *widths):
         names = getattr(mapping, key)
         if names is None:
             continue
         try:
-            found[key] = _array(mesh, [names] if isinstance(names, str) else names, width)
+            values, of_nodes = _array(mesh, [names] if isinstance(names, str) else names, widths.get(key, 1))
         except ValueError as error:
             faults.append(Problem(key, spelling(names), str(error)))
+            continue
+        if key == "displacement":
+            fields["uz_m"] = values @ mapping.turn[2] * mapping.length, of_nodes
+        elif key == "stress":
+            stress = _turned(values * pascal, mapping)
+            fields |= {f"s{name}_Pa": (stress[:, k], of_nodes) for k, name in enumerate(STRESSES)}
+            fields.setdefault("mises_Pa", (von_mises(stress), of_nodes))
+        else:
+            column, factor = scalars[key]
+            fields[column] = values[:, 0] * factor, of_nodes
     if faults:
         raise _refused(path, faults)
-    pascal = float(in_unit(f"1 {mapping.stress_unit}", "Pa"))
-    scalars = (("pressure", "p_Pa", pascal), ("mises", "mises_Pa", pascal), ("peeq", "peeq", 1.0))
-    fields = {
-        column: (found[key][0][:, 0] * factor, found[key][1])
-        for key, column, factor in scalars
-        if key in found
-    }
-    if "displacement" in found:
-        values, of_nodes = found["displacement"]
-        fields["uz_m"] = values @ mapping.turn[2] * mapping.length, of_nodes
-    if "stress" in found:
-        values, of_nodes = found["stress"]
-        stress = _turned(values * pascal, mapping)
-        fields |= {f"s{name}_Pa": (stress[:, k], of_nodes) for k, name in enumerate(STRESSES)}
-        fields.setdefault("mises_Pa", (von_mises(stress), of_nodes))
     return fields
 
 

@@ -15,7 +15,7 @@ from math import ceil, inf, sqrt
 
 import sam
 from sam.grid import Room
-from sam.scene import Grid, Result, Scene
+from sam.scene import Result, Scene
 from verification.cost import estimates
 from verification.cost.advice import (
     COATED,
@@ -31,6 +31,7 @@ from verification.cost.advice import (
 from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
+from verification.scenes import with_keys
 from verification.text.readable import with_prefix, with_time
 from verification.uncertainty.rule import STEP_FACTOR, bound
 from verification.uncertainty.solving import (
@@ -40,7 +41,6 @@ from verification.uncertainty.solving import (
     Family,
     Member,
     Solve,
-    Solved,
     alone,
     assessed,
     cell_size,
@@ -123,25 +123,22 @@ def expected(scene: Scene, model: str) -> Choice:
 def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
     """The scene with these cells and load steps, asked for its uncertainty."""
     scene = alone(scene)
-    changed = scene.model_copy(update={"solver": scene.solver.model_copy(update={"uncertainty": True})})
+    found = with_keys(scene, "solver", uncertainty=True)
     if model == models.SAM:
         grid = sam.choose_grid(scene)
         a, b = sam.hertz_semi_axes(scene)
         factor = (sqrt(a * b / (grid.hx * grid.hy)) if grid.ny > 1 else a / grid.hx) / choice.cells
         more = (min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
         cells = tuple(n if count > 1 else 1 for n, count in zip(more, grid.shape, strict=True))
-        given = (scene.grid or Grid()).model_copy(update={"cells": cells})
-        changed = changed.model_copy(update={"grid": given})
+        found = with_keys(found, "grid", cells=cells)
     else:
-        fem = scene.fem.model_copy(update={"cells_per_radius": ceil(choice.cells)})
-        changed = changed.model_copy(update={"fem": fem})
+        found = with_keys(found, "fem", cells_per_radius=ceil(choice.cells))
     if not choice.steps:
-        return changed
-    loading = scene.loading
-    steps: dict[str, int] = {"steps": choice.steps}
+        return found
+    steps, loading = {"steps": choice.steps}, scene.loading
     if loading.unload_steps:
         steps["unload_steps"] = min(ceil(loading.unload_steps * choice.steps / loading.steps), MOST_STEPS)
-    return changed.model_copy(update={"loading": loading.model_copy(update=steps)})
+    return with_keys(found, "loading", **steps)
 
 
 def _resolution(kind: str, method: str, error: float, power: float) -> float | None:
@@ -193,15 +190,6 @@ def missed(result: Result | Run) -> str:
     return f"{words}: {found['quantity']} is known to {100 * found['relative']:.2g} %; {found['why']}"
 
 
-@dataclass(frozen=True)
-class Solution:
-    """A solved grid. choice: what was asked for; member: what was made of it."""
-
-    choice: Choice
-    member: Member
-    result: Result
-
-
 @dataclass
 class Attempt:
     """What some grids say of the finest: the quantity known worst, its relative uncertainty, why it ends."""
@@ -221,8 +209,8 @@ class Attempt:
 @dataclass
 class Search:
     """The solves for the accuracy of a scene. ladder: cells in the contact radius of its grids, coarsest
-    first; kept: scene as text -> result; grids: choice -> its solution; foreseen: processor seconds predicted
-    for all; steps, boxes: solutions that differ in load steps, and in the finite-element box.
+    first; kept: scene as text -> result; grids: choice -> its member; foreseen: processor seconds predicted
+    for all; steps, boxes: members that differ in load steps, and in the finite-element box.
     """
 
     scene: Scene
@@ -230,10 +218,10 @@ class Search:
     solver: Solve
     ladder: list[float] = field(default_factory=list)
     kept: dict[str, Result] = field(default_factory=dict)
-    grids: dict[Choice, Solution] = field(default_factory=dict)
+    grids: dict[Choice, Member] = field(default_factory=dict)
     foreseen: float = 0.0
-    steps: Sequence[Solution] = ()
-    boxes: Sequence[Solution] = ()
+    steps: Sequence[Member] = ()
+    boxes: Sequence[Member] = ()
 
     @property
     def asked(self) -> float:
@@ -288,7 +276,7 @@ class Search:
         """
         for _ in range(ROUNDS if count else 0):
             choice = Choice(self.ladder[0], count)
-            tried = self.solutions(choice, members_of_steps(self.member(choice)))
+            tried = self.solved(choice, members_of_steps(self.member(choice)))
             self.steps = [*tried, *(each for each in self.steps if self.tells_more(each, tried))]
             part = max(map(self.part_of_steps, quantities_of(self.scene)))
             if count == MOST_STEPS or (part < inf and part <= most):
@@ -297,17 +285,17 @@ class Search:
             count = min(ceil(count * times), MOST_STEPS)
         if self.model != models.SAM and not self.boxes:
             choice = Choice(self.ladder[0], count)
-            self.boxes = self.solutions(choice, members_of_box(self.member(choice)))
+            self.boxes = self.solved(choice, members_of_box(self.member(choice)))
         return count
 
-    def tells_more(self, earlier: Solution, tried: Sequence[Solution]) -> bool:
+    def tells_more(self, earlier: Member, tried: Sequence[Member]) -> bool:
         """Whether a solution with fewer load steps counts beside three others, which may agree by chance."""
         cuts = tried[0].result.cost.get("step_cuts")
         return (
             earlier.result.converged
             and earlier.result.cost.get("step_cuts") == cuts
-            and earlier.member.size >= NEAREST * tried[0].member.size
-            and earlier.member.number not in [each.member.number for each in tried]
+            and earlier.size >= NEAREST * tried[0].size
+            and earlier.number not in [each.number for each in tried]
         )
 
     def part_of_steps(self, name: str) -> float:
@@ -319,22 +307,21 @@ class Search:
         cuts = {result.cost.get("step_cuts") or 0 for result in results}
         if len(cuts) > 1 or not all(result.converged for result in results) or not all(values):
             return inf
-        sizes = [each.member.size for each in self.steps]
+        sizes = [each.size for each in self.steps]
         return bound(values, sizes, STEP_ORDER, STEP_FACTOR) / abs(values[0])
 
     def attempt(self, choice: Choice) -> Attempt:
         """What a grid and its companions say of it."""
-        sets = (self.with_companions(choice), self.steps, self.boxes)
-        family = Family(*(tuple(each.member for each in some) for some in sets))
-        result = assessed(self.scene, Solved(family, *([each.result for each in some] for some in sets)))
+        family = Family(self.with_companions(choice), self.steps, self.boxes)
+        result = assessed(self.scene, family)
         known = {name: (result.uncertainty or {}).get(name, {}) for name in quantities_of(self.scene)}
         worst = max(known, key=lambda name: inf if (u := known[name].get("relative")) is None else u)
         relative, why = known[worst].get("relative"), ""
-        if relative is None and not under_resolved(self.scene, sets[0][0].result, family):
+        if relative is None and not under_resolved(self.scene, family.cells[0].result, family):
             why = known[worst].get("flag", str(result.status))
         return Attempt(choice, result, worst, relative, why)
 
-    def with_companions(self, choice: Choice) -> list[Solution]:
+    def with_companions(self, choice: Choice) -> list[Member]:
         """A grid and the next two coarser ones, none hardly coarser than the one before. Those of an elastic
         body are solved in one step, at the depths of its largest stresses, or at one where no stress is asked
         for.
@@ -345,7 +332,7 @@ class Search:
             depths = depths[:1]
         for cells in reversed(self.ladder):
             fewer = Choice(cells, choice.steps)
-            if len(picked) < 3 and self.member(fewer).size >= NEAREST * picked[-1].member.size:
+            if len(picked) < 3 and self.member(fewer).size >= NEAREST * picked[-1].size:
                 picked.append(self.solution(fewer, depths))
         return picked
 
@@ -368,7 +355,7 @@ class Search:
         best = min(finer, key=time)
         if finer[best] == inf:
             entry = attempt.result.uncertainty[attempt.quantity]
-            left = f"{self.steps[0].choice.steps} load steps leave too much" if self.steps else ""
+            left = f"{self.steps[0].number} load steps leave too much" if self.steps else ""
             box = f"fem.box = {self.scene.fem.box:g} leaves too much"
             said = box if entry["u_box"] > entry["u_steps"] else left
             raise BeyondError(f"more cells do not help: {said}")
@@ -401,35 +388,31 @@ class Search:
             count = scene.fem.cells_per_radius
             return Member(scene, f"{count} elements in the radius", count, 1 / count)
         if depths is not None:
-            grid = scene.grid.model_copy(update={"depths": tuple(depths)})
-            scene = in_one_step(scene.model_copy(update={"grid": grid}))
+            scene = in_one_step(with_keys(scene, "grid", depths=tuple(depths)))
         grid = sam.plan(scene).on(room or Room()).grid
         return Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
 
-    def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> Solution:
+    def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> Member:
         """The scene on some cells, solved once; depths: as those of `member`."""
         if choice not in self.grids:
-            member = self.member(choice, depths=depths)
-            (found,) = self.solutions(choice, [member])
-            room = found.result.discretisation.get("grid_enlarged")
+            (found,) = self.solved(choice, [self.member(choice, depths=depths)])
+            result, room = found.result, found.result.discretisation.get("grid_enlarged")
             if room is not None:
-                found = replace(found, member=self.member(choice, Room(**room), depths))
+                found = self.member(choice, Room(**room), depths)
             if depths is not None and len(depths) == 1:
-                left = {k: None if of_stress(k) else v for k, v in found.result.quantities.items()}
-                found = replace(found, result=replace(found.result, quantities=left))
-            self.grids[choice] = found
+                left = {k: None if of_stress(k) else v for k, v in result.quantities.items()}
+                result = replace(result, quantities=left)
+            self.grids[choice] = replace(found, result=result)
         return self.grids[choice]
 
-    def solutions(self, choice: Choice, members: Sequence[Member]) -> list[Solution]:
+    def solved(self, choice: Choice, members: Sequence[Member]) -> list[Member]:
         """Some scenes, each solved once. Raises BeyondError, which names the choice."""
-        found = []
         for member in members:
             key = member.scene.model_dump_json()
             if key not in self.kept:
                 self.foreseen += affordable(choice, member.scene, self.model, self.foreseen)
                 self.kept[key] = self.solver(member.scene, member.label)
-            found.append(Solution(choice, member, self.kept[key]))
-        return found
+        return [replace(each, result=self.kept[each.scene.model_dump_json()]) for each in members]
 
 
 def of_stress(name: str) -> bool:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from verification.cost.estimates import SETTLES, peak_pressure
+from verification.runs.files import plain
 from verification.runs.tables import csv_text
 from verification.text.readable import with_time
 
@@ -91,20 +92,10 @@ def read_rows(text: str) -> list[AdviceRow]:
     ]
 
 
-def shown(value: str | float) -> bool:
-    """Whether it is not a number that is missing."""
-    return isinstance(value, str) or math.isfinite(value)
-
-
 def texts_of(row: AdviceRow) -> list[str]:
     """The cells of a row; empty where there is no number."""
-    values = astuple(row)
-    return ["" if not shown(v) else f"{v:.3g}" if isinstance(v, float) else str(v) for v in values]
-
-
-def table_text(rows: Sequence[AdviceRow]) -> str:
-    """The file of a table."""
-    return csv_text(COLUMNS, list(map(texts_of, rows)))
+    cells = (f"{v:.3g}" if isinstance(v, float) else str(v) for v in astuple(row))
+    return ["" if cell in ("nan", "inf") else cell for cell in cells]
 
 
 def kind_of(scene: Scene) -> str | None:
@@ -163,9 +154,9 @@ def _scale(scene: Scene, row: AdviceRow) -> float:
 
 
 def _entry(row: AdviceRow, scale: float) -> dict:
-    entry: dict[str, Any] = asdict(replace(row, seconds=row.seconds * scale))
+    entry: dict[str, Any] = plain(asdict(replace(row, seconds=row.seconds * scale)))
     del entry["kind"]
-    return {key: value if shown(value) else None for key, value in entry.items()}
+    return entry
 
 
 def _words(kind: str | None, rows: Sequence[AdviceRow]) -> str:
@@ -208,7 +199,7 @@ def main(folder: Path) -> None:
     text = gzip.decompress(packed.read_bytes()) if packed.is_file() else table.read_bytes()
     rows = read_rows(text.decode("utf-8"))
     target = Path(__file__).parents[1] / "data" / KEPT
-    target.write_text(table_text(rows), encoding="utf-8")
+    target.write_text(csv_text(COLUMNS, list(map(texts_of, rows))), encoding="utf-8")
     print(f"{target}: {len(rows)} rows")
 
 

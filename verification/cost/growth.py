@@ -17,10 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene import CounterSurface, Grid, Progress, Scene, Solver, read_scene
+from sam.scene import CounterSurface, Progress, Scene, Solver, read_scene
 from verification.cost import estimates
 from verification.cost.measured import alone, idle_bytes, solve_alone
 from verification.runs import models
+from verification.scenes import with_keys
 
 POISSON, SHEAR = 0.3, 80e9  # of the box that is applied by itself
 CELL = 1e-6  # its cells, cubes, in m
@@ -112,49 +113,40 @@ def _applied(nx: int, ny: int, layers: int, error: float) -> tuple[float, float,
 # The ladders
 
 
-def _gridded(scene: Scene, **keys) -> Scene:
-    return scene.model_copy(update={"grid": (scene.grid or Grid()).model_copy(update=keys)})
-
-
-def _loaded(scene: Scene, **keys) -> Scene:
-    return scene.model_copy(update={"loading": scene.loading.model_copy(update=keys)})
-
-
 def _patch(scene: Scene, cells: int) -> Scene:
     """The rough scene on n x n of its cells, under the same mean pressure."""
     share = (cells / scene.grid.cells[0]) ** 2
     side = cells / scene.grid.cells[0] * scene.grid.extent[0]
-    scene = _gridded(scene, cells=(cells, cells), extent=(side, side))
-    return _loaded(scene, force=share * scene.loading.force).model_copy(
-        update={"solver": Solver(tolerance=1e-3)}
-    )
+    scene = with_keys(scene, "grid", cells=(cells, cells), extent=(side, side))
+    scene = with_keys(scene, "loading", force=share * scene.loading.force)
+    return scene.model_copy(update={"solver": Solver(tolerance=1e-3)})
 
 
 def square(
     family: str, sizes: Iterable[int], name: str, *, bare: bool = False, grid: Mapping = {}, **loading
 ) -> list[Rung]:
     """A scene of SAM on n x n cells; bare: without its film; grid, loading: keys of them."""
-    scene = _loaded(scene_of(name), **loading)
+    scene = with_keys(scene_of(name), "loading", **loading)
     if bare:
-        scene = scene.model_copy(update={"body": scene.body.model_copy(update={"coating": None})})
-    scenes = {n: _gridded(scene, cells=(n, n), **grid) for n in sizes}
+        scene = with_keys(scene, "body", coating=None)
+    scenes = {n: with_keys(scene, "grid", cells=(n, n), **grid) for n in sizes}
     return [Rung(family, f"{n} x {n} cells", models.SAM, each, n**2) for n, each in scenes.items()]
 
 
 def running_in(sizes: Iterable[int]) -> list[Rung]:
     """A cycle on a rough patch, with film and wear, in cells of 1 um."""
-    scene = _loaded(scene_of("running-in-bulk"), steps=3, unload_steps=3, cycles=1)
+    scene = with_keys(scene_of("running-in-bulk"), "loading", steps=3, unload_steps=3, cycles=1)
     return [Rung("running-in", f"{n} x {n} cells", models.SAM, _patch(scene, n), n**2) for n in sizes]
 
 
 def cycles(counts: Iterable[int], *, family: str = "cycles", renewed: bool = False) -> list[Rung]:
     """The same patch, small, over more and more cycles; renewed: against a rough plane, other in each."""
-    scene = _patch(_loaded(scene_of("running-in-bulk"), steps=3, unload_steps=3), 32)
+    scene = _patch(with_keys(scene_of("running-in-bulk"), "loading", steps=3, unload_steps=3), 32)
     if renewed:
-        plane = scene.counterbody.model_copy(update={"surface": CounterSurface(**PLANE)})
-        scene = scene.model_copy(update={"counterbody": plane})
+        scene = with_keys(scene, "counterbody", surface=CounterSurface(**PLANE))
     return [
-        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, _loaded(scene, cycles=n), n) for n in counts
+        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, with_keys(scene, "loading", cycles=n), n)
+        for n in counts
     ]
 
 
@@ -162,12 +154,9 @@ def elements(
     family: str, model: str, sizes: Iterable[int], name: str = "hertz-sphere", *, steps: int = 1
 ) -> list[Rung]:
     """The rigid sphere with more and more elements in the contact radius; unknowns are counted."""
-    scene = _loaded(scene_of(name), steps=steps, unload=False)
-    meshed = {n: scene.fem.model_copy(update={"cells_per_radius": n}) for n in sizes}
-    return [
-        Rung(family, f"{n} elements in a", model, scene.model_copy(update={"fem": fem}))
-        for n, fem in meshed.items()
-    ]
+    scene = with_keys(scene_of(name), "loading", steps=steps, unload=False)
+    meshed = {n: with_keys(scene, "fem", cells_per_radius=n) for n in sizes}
+    return [Rung(family, f"{n} elements in a", model, each) for n, each in meshed.items()]
 
 
 ONE_STEP = {"steps": 1, "unload": False}

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from shutil import rmtree
-from typing import TYPE_CHECKING, Any, Required, TypedDict
+from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar
 
 import numpy as np
 
@@ -44,6 +44,7 @@ from verification.runs.tables import columns_text, frame_of, read_table
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+T = TypeVar("T")
 SUMMARY = "summary.json"
 CHECKPOINT = "checkpoint.npz"
 COMPANION = "compare.json"
@@ -81,6 +82,17 @@ class Uncertainty(TypedDict, total=False):
     steps: list[float]
 
 
+class _Said(Generic[T]):
+    """What summary.json says under the name of this attribute; None where an older one says nothing."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, run: Any, owner: type) -> T:
+        found: Any = self if run is None else run.summary.get(self.name)
+        return found
+
+
 @dataclass(frozen=True)
 class Run:
     """A result read back. summary: of summary.json; tables: name -> floats (NaN: empty) and texts."""
@@ -89,45 +101,19 @@ class Run:
     summary: Mapping
     tables: Mapping[str, DataFrame]
 
+    model = _Said[str]()
+    status = _Said[str]()
+    message = _Said[str]()
+    warnings = _Said[list[str]]()
+    cost = _Said[Mapping[str, float | int | None]]()
+    discretisation = _Said[Mapping[str, Any]]()
+    verdict = _Said[Mapping[str, Any] | None]()
+    uncertainty = _Said[Mapping[str, Uncertainty] | None]()
+    model_range = _Said[Mapping[str, Any] | None]()
+
     @property
     def quantities(self) -> Mapping[str, float | None]:
         return dict.fromkeys(QUANTITIES) | self.summary["quantities"]  # older runs have fewer
-
-    @property
-    def model(self) -> str:
-        return self.summary["model"]
-
-    @property
-    def status(self) -> str:
-        return self.summary["status"]
-
-    @property
-    def message(self) -> str:
-        return self.summary["message"]
-
-    @property
-    def warnings(self) -> list[str]:
-        return list(self.summary["warnings"])
-
-    @property
-    def cost(self) -> Mapping[str, float | int | None]:
-        return self.summary["cost"]
-
-    @property
-    def discretisation(self) -> Mapping[str, Any]:
-        return self.summary["discretisation"]
-
-    @property
-    def verdict(self) -> Mapping[str, Any] | None:
-        return self.summary.get("verdict")
-
-    @property
-    def uncertainty(self) -> Mapping[str, Uncertainty] | None:
-        return self.summary.get("uncertainty")
-
-    @property
-    def model_range(self) -> Mapping[str, Any] | None:
-        return self.summary.get("model_range")
 
     @property
     def last_fitting(self) -> Mapping[str, float | None]:

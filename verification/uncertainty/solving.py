@@ -13,10 +13,11 @@ import numpy as np
 
 import sam
 from sam.grid import CellGrid, Room
-from sam.scene import COLUMNS, Grid, Problem, Result, Scene, SceneError, Status, spelling
+from sam.scene import COLUMNS, Problem, Result, Scene, SceneError, Status, spelling
 from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.tables import contact_size
+from verification.scenes import with_keys
 from verification.uncertainty.rule import EDGE, FACTOR, STEP_FACTOR, bound, converging, of_edge, order_seen
 
 Solve = Callable[[Scene, str], Result]
@@ -119,28 +120,50 @@ FEWEST_STEPS = 4  # from so many on the others have fewer, else more
 
 @dataclass(frozen=True)
 class Member:
-    """label: for the reader; number: of cells or load steps; size: what its error falls with."""
+    """label: for the reader; number: of cells or load steps; size: what its error falls with; result: once
+    it is solved.
+    """
 
     scene: Scene
     label: str
     number: float
     size: float
+    result: Any = None
 
 
 @dataclass(frozen=True)
 class Family:
     """The scenes that an uncertainty needs. cells: finest first; steps: on the coarsest of them, beginning
     with it; box: beginning with the last of steps, or of cells; empty where history or box decide nothing.
+    edge: cells in the radius if it falls between them.
     """
 
-    cells: tuple[Member, ...]
-    steps: tuple[Member, ...] = ()
-    box: tuple[Member, ...] = ()
+    cells: Sequence[Member]
+    steps: Sequence[Member] = ()
+    box: Sequence[Member] = ()
+    edge: float = inf
 
     @property
     def all(self) -> tuple[Member, ...]:
         """Every scene once, the finest first."""
         return (*self.cells, *self.steps[1:], *self.box[1:])
+
+    @property
+    def reason(self) -> str:
+        """Why the results are not of one family; empty if they are."""
+        finer = "grid.cells" if self.cells[0].result.model == models.SAM else "fem.cells_per_radius"
+        parts = {finer: self.cells, "loading.steps": self.steps, "fem.box": self.box}
+        for key, members in parts.items():
+            for member in members:
+                if not member.result.converged:
+                    return f"{member.label}: {member.result.status}: raise {key}"
+        cuts = {
+            each.label: each.result.cost.get("step_cuts") or 0 for each in itertools.chain(*parts.values())
+        }
+        if len(set(cuts.values())) > 1:
+            words = ", ".join(f"{cut} with {label}" for label, cut in cuts.items())
+            return f"load steps were cut differently ({words}): raise loading.steps"
+        return ""
 
 
 class NoFamilyError(ValueError):
@@ -149,13 +172,7 @@ class NoFamilyError(ValueError):
 
 def alone(scene: Scene) -> Scene:
     """The scene without its uncertainty, and asked for no accuracy: what a model solves."""
-    return _changed(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
-
-
-def _changed(scene: Scene, section: str, **keys: Any) -> Scene:
-    """The scene with keys of a section changed."""
-    given = getattr(scene, section) or Grid()  # which alone a scene may lack
-    return scene.model_copy(update={section: given.model_copy(update=keys)})
+    return with_keys(scene, "solver", uncertainty=False, accuracy=None, accuracy_of=None)
 
 
 def family(
@@ -177,7 +194,7 @@ def family(
     return _with_steps_and_box(cells, model)
 
 
-def _with_steps_and_box(cells: tuple[Member, ...], model: str) -> Family:
+def _with_steps_and_box(cells: Sequence[Member], model: str) -> Family:
     steps = members_of_steps(cells[-1]) if has_history(cells[-1].scene) else ()
     box = members_of_box((steps or cells)[-1]) if model != models.SAM else ()
     return Family(cells, steps, box)
@@ -252,7 +269,7 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
         ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
         of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
         return [
-            Member(_changed(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
+            Member(with_keys(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
             for each, n in of
         ]
     grid = sam.plan(scene).on(room).grid
@@ -264,7 +281,7 @@ def in_one_step(scene: Scene) -> Scene:
     """The same load of an elastic body at once; a way is gone as it is."""
     if scene.strokes.count:
         return scene
-    return _changed(scene, "loading", steps=1, unload_steps=None)
+    return with_keys(scene, "loading", steps=1, unload_steps=None)
 
 
 def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float] | None) -> Member:
@@ -279,7 +296,7 @@ def _of_grid(scene: Scene, grid: CellGrid, factor: float, depths: Sequence[float
     elif depths is not None:
         change |= {"depths": tuple(depths), "layers": None, "depth": None}
     size = sides[0] / nx if ny == 1 else sqrt(sides[0] * sides[1] / (nx * ny))
-    return Member(_changed(scene, "grid", **change), f"{nx} cells", nx, size)
+    return Member(with_keys(scene, "grid", **change), f"{nx} cells", nx, size)
 
 
 def _faces(scene: Scene, faces: np.ndarray, share: float) -> tuple[float, ...]:
@@ -306,7 +323,7 @@ def wider(member: Member) -> Member:
         last = faces[-1] - faces[-2]
         deeper = np.append(faces, np.arange(faces[-1], WIDER * faces[-1], last) + last)
         change |= {"depths": tuple(map(float, deeper)), "layers": None, "depth": None}
-    scene = _changed(member.scene, "grid", **change)
+    scene = with_keys(member.scene, "grid", **change)
     return replace(member, scene=scene, label=f"{member.label} and more beside them")
 
 
@@ -324,7 +341,7 @@ def members_of_steps(coarsest: Member) -> tuple[Member, ...]:
         if along:
             own = {"steps": _share(along, share), "step_per_radius": None}
             change["path"] = loading.path.model_copy(update=own)
-        scene = _changed(coarsest.scene, "loading", **change)
+        scene = with_keys(coarsest.scene, "loading", **change)
         members.append(Member(scene, f"{count} load steps on {coarsest.label}", count, 1.0 / count))
     return tuple(members)
 
@@ -340,39 +357,12 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
         return ()
     words = f"radii on {coarsest.label}"
     return tuple(
-        Member(_changed(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
+        Member(with_keys(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
         for size in (box, box / RATIO)
     )
 
 
 # their results
-
-
-@dataclass(frozen=True)
-class Solved:
-    """Results of a family: cells, load steps, boxes. edge: cells in the radius if it falls between them."""
-
-    family: Family
-    cells: Sequence[Result]
-    steps: Sequence[Result] = ()
-    box: Sequence[Result] = ()
-    edge: float = inf
-
-    @property
-    def reason(self) -> str:
-        """Why the results are not of one family; empty if they are."""
-        finer = "grid.cells" if self.cells[0].model == models.SAM else "fem.cells_per_radius"
-        members = (*self.family.cells, *self.family.steps, *self.family.box)
-        pairs = list(zip(members, (*self.cells, *self.steps, *self.box), strict=True))
-        keys = [finer] * len(self.cells) + ["loading.steps"] * len(self.steps) + ["fem.box"] * len(self.box)
-        for (member, result), key in zip(pairs, keys, strict=True):
-            if not result.converged:
-                return f"{member.label}: {result.status}: raise {key}"
-        cuts = [result.cost.get("step_cuts") or 0 for _, result in pairs]
-        if len(set(cuts)) > 1:
-            words = ", ".join(f"{cut} with {each.label}" for each, cut in zip(members, cuts, strict=True))
-            return f"load steps were cut differently ({words}): raise loading.steps"
-        return ""
 
 
 def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
@@ -383,8 +373,8 @@ def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
 
 def asked_of(scene: Scene, source: str) -> Scene:
     """The scene, asked for its uncertainty. SceneError where there is none; source: names it in errors."""
-    solver = scene.solver.model_copy(update={"uncertainty": True})
-    asked = scene.model_copy(update={"solver": solver})
+    asked = with_keys(scene, "solver", uncertainty=True)
+    solver = asked.solver
     own = ((f"solver.{key}", words) for key, words in solver.conflicts(solver.model_dump(exclude_none=True)))
     if found := [*own, *asked.excesses()]:
         raise SceneError([Problem(key, spelling(True), words) for key, words in found], source)
@@ -407,23 +397,22 @@ def with_uncertainty(scene: Scene, model: str, solver: Solve) -> Result:
     if reason:
         return _reported(fine, scene, reason)
 
-    def solved(members: Sequence[Member], first: Result) -> tuple[tuple, tuple]:
-        """The members, wider where that is needed, and their results, of which the first is known."""
-        pairs = [(member, first) for member in members[:1]]
+    def solved(members: Sequence[Member], first: Result) -> Sequence[Member]:
+        """The members, wider where that is needed, with their results, of which the first is known."""
+        found = [replace(member, result=first) for member in members[:1]]
         for member in members[1:]:
             result = solver(member.scene, member.label)
             if model == models.SAM and result.status in AT_EDGE:
                 larger = wider(member)
                 if larger.scene != member.scene:
                     member, result = larger, solver(larger.scene, larger.label)
-            pairs.append((member, result))
-        return tuple(member for member, _ in pairs), tuple(result for _, result in pairs)
+            found.append(replace(member, result=result))
+        return found
 
-    of_cells, cells = solved(found.cells, fine)
-    found = _with_steps_and_box(of_cells, model)
-    of_steps, steps = solved(found.steps, cells[-1])
-    of_box, box = solved(found.box, (steps or cells)[-1])
-    return assessed(scene, Solved(Family(of_cells, of_steps, of_box), cells, steps, box))
+    cells = solved(found.cells, fine)
+    found = _with_steps_and_box(cells, model)
+    steps = solved(found.steps, cells[-1].result)
+    return assessed(scene, Family(cells, steps, solved(found.box, (steps or cells)[-1].result)))
 
 
 def under_resolved(scene: Scene, fine: Result, found: Family) -> str:
@@ -465,16 +454,16 @@ def unknown(result: Result | Run) -> str:
     return f"no uncertainty of any quantity: {'; '.join(for_all or reasons)}" if reasons else ""
 
 
-def assessed(scene: Scene, solved: Solved) -> Result:
+def assessed(scene: Scene, solved: Family) -> Result:
     """The finest result of a family, with the uncertainty of its quantities and the cost of all solves."""
-    fine = solved.cells[0]
-    reason = solved.reason or under_resolved(scene, fine, solved.family)
-    solved = replace(solved, edge=cells_to_edge(scene, fine, solved.family))
-    members = (*solved.cells[1:], *solved.steps[1:], *solved.box[1:])
-    return replace(_reported(fine, scene, reason, solved), cost=cost_of(fine, members))
+    fine = solved.cells[0].result
+    reason = solved.reason or under_resolved(scene, fine, solved)
+    solved = replace(solved, edge=cells_to_edge(scene, fine, solved))
+    cost = cost_of(fine, [member.result for member in solved.all[1:]])
+    return replace(_reported(fine, scene, reason, solved), cost=cost)
 
 
-def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = None) -> Result:
+def _reported(fine: Result, scene: Scene, reason: str, solved: Family | None = None) -> Result:
     """The result with the uncertainty of each quantity that the scene does not give, or why there is none;
     reason: of all that have none of their own.
     """
@@ -490,34 +479,34 @@ def _reported(fine: Result, scene: Scene, reason: str, solved: Solved | None = N
     return replace(fine, uncertainty=entries, tables={**fine.tables, "quantities": table})
 
 
-def entry(name: str, solved: Solved, tolerance: float) -> dict[str, Any]:
+def entry(name: str, solved: Family, tolerance: float) -> dict[str, Any]:
     """What the members say about a quantity. u_cells, u_steps, u_box: bounds by each; u_num: their sum, as
     errors of one sign are usual, at least the tolerance of the solvers. Bounds by steps and box are relative
     changes on the coarsest cells; that by cells is at least what the edge of the contact leaves.
     """
-    value = solved.cells[0].quantities[name]
-    outline = name in EDGES and solved.edge < inf and solved.cells[0].model == models.SAM
-    factor = OUTLINE_FACTOR if outline else FACTOR
-    of_cells, values = _bound(name, solved.family.cells, solved.cells, ORDERS[name], factor=factor)
-    of_steps, on_steps = _bound(name, solved.family.steps, solved.steps, STEP_ORDER, factor=STEP_FACTOR)
-    of_box, in_boxes = _bound(name, solved.family.box, solved.box, BOX_ORDERS.get(name, 2.0))
+    fine = solved.cells[0].result
+    value, of_sam = fine.quantities[name], fine.model == models.SAM
+    factor = OUTLINE_FACTOR if name in EDGES and solved.edge < inf and of_sam else FACTOR
+    of_cells, values = _bound(name, solved.cells, ORDERS[name], factor)
+    of_steps, on_steps = _bound(name, solved.steps, STEP_ORDER, STEP_FACTOR)
+    of_box, in_boxes = _bound(name, solved.box, BOX_ORDERS.get(name, 2.0))
     if of_cells is None:
         return {"u_num": None, "flag": "a coarser solve does not have it"}
-    left = solved.cells[0].model == models.SAM or name in OF_ELEMENTS
+    left = of_sam or name in OF_ELEMENTS
     edge = of_edge(value, solved.edge, EDGES.get(name, EDGE)) if ORDERS[name] == 2.0 and left else 0.0
     parts = {"u_cells": max(of_cells, edge), "u_steps": _carried(of_steps, on_steps, value)}
     parts["u_box"] = _carried(of_box, in_boxes, value)
     total = max(sum(parts.values()), tolerance * abs(value))
-    sizes = [member.size for member in solved.family.cells]
+    sizes = [member.size for member in solved.cells]
     return {
         "u_num": total,
         "relative": total / abs(value) if value else None,
         **parts,
         "order_seen": order_seen(values, sizes),
         "values": values,
-        "cells": [member.number for member in solved.family.cells],
+        "cells": [member.number for member in solved.cells],
         "values_of_steps": on_steps,
-        "steps": [member.number for member in solved.family.steps],
+        "steps": [member.number for member in solved.steps],
         "flag": "" if converging(values, sizes) else NOT_CONVERGING,
     }
 
@@ -530,10 +519,10 @@ def _carried(part: float | None, values: Sequence[float], value: float) -> float
 
 
 def _bound(
-    name: str, members: Sequence[Member], results: Sequence[Result], order: float, *, factor: float = FACTOR
+    name: str, members: Sequence[Member], order: float, factor: float = FACTOR
 ) -> tuple[float | None, list[float]]:
     """The bound of a quantity along one direction, None where there is none, and its values."""
-    values = [result.quantities[name] for result in results]
+    values = [member.result.quantities[name] for member in members]
     if len(values) < 2 or None in values:
         return None, []
     return bound(values, [member.size for member in members], order, factor), values

@@ -7,6 +7,7 @@ beside them; errors are against references that know their own uncertainty.
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise, zip_longest
 from typing import Any
 
@@ -168,7 +169,7 @@ def reached(rows: DataFrame, method: str, target: float, column: str = "cpu_s") 
     return at_error(own[column], own["error"], target, max(rows["floor"]))
 
 
-def ratio_at(rows: DataFrame, target: float) -> float:
+def ratio_at(rows: DataFrame, _: str, *, target: float) -> float:
     """Time of SAM, on one grid or on two, over that of the axisymmetric model for one error; infinite where
     SAM never reaches it. A model that never reaches it needs more than its finest point took: that time is
     taken, which is in its favour.
@@ -179,14 +180,7 @@ def ratio_at(rows: DataFrame, target: float) -> float:
     return least / (slowest if its[0] is None else its[0])
 
 
-def ratio_at_one(rows: DataFrame, _: str) -> float:
-    """At an error of 1 %."""
-    return ratio_at(rows, TARGETS[1])
-
-
-def ratio_at_a_third(rows: DataFrame, _: str) -> float:
-    """At an error of 0.3 %."""
-    return ratio_at(rows, TARGETS[2])
+ratio_at_one, ratio_at_a_third = (partial(ratio_at, target=target) for target in TARGETS[1:3])
 
 
 def faster(rows: DataFrame, other: str) -> tuple[float, float]:

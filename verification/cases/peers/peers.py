@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -109,19 +110,14 @@ def ratio(slower: float | None, faster: float | None) -> float:
     return slower / faster if slower and faster else math.nan
 
 
-def _over_sam(rows: DataFrame, program: str) -> float:
+def _over_sam(rows: DataFrame, _: str, *, program: str) -> float:
+    """Its time over SAM's to an error of the sphere; aspher's times are the target."""
     times = reached(rows, elastic.HERTZ_ERROR)
     return ratio(*(times.get(name, ("", None))[1] for name in (program, SAM)))
 
 
-def tamaas_to_error(rows: DataFrame, _: str) -> float:
-    """Its time over SAM's to an error of the sphere."""
-    return _over_sam(rows, TAMAAS)
-
-
-def contact_mechanics_to_error(rows: DataFrame, _: str) -> float:
-    """The same of ContactMechanics; aspher's times are the target."""
-    return _over_sam(rows, CONTACT_MECHANICS)
+tamaas_to_error = partial(_over_sam, program=TAMAAS)
+contact_mechanics_to_error = partial(_over_sam, program=CONTACT_MECHANICS)
 
 
 def contact_mechanics_on_finest(rows: DataFrame, _: str) -> float:
@@ -143,14 +139,12 @@ def step_on(rows: DataFrame, cells: tuple[int, int]) -> dict[str, Any]:
     return found | {"ratio on the same cells": on_same, "SAM's error there": same["error"]}
 
 
-def step_on_coarse(rows: DataFrame, _: str) -> float:
-    """Tamaas' time over SAM's on the coarser cells; nan without Tamaas."""
-    return step_on(rows, plastic.COMPARED[0])["ratio"] if len(rows) else math.nan
+def _step(rows: DataFrame, _: str, *, place: int) -> float:
+    """Tamaas' time over SAM's on the coarser or the finer cells; nan without Tamaas."""
+    return step_on(rows, plastic.COMPARED[place])["ratio"] if len(rows) else math.nan
 
 
-def step_on_fine(rows: DataFrame, _: str) -> float:
-    """The same on the finer ones."""
-    return step_on(rows, plastic.COMPARED[-1])["ratio"] if len(rows) else math.nan
+step_on_coarse, step_on_fine = (partial(_step, place=place) for place in (0, -1))
 
 
 # what is shown

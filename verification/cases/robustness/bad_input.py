@@ -40,6 +40,7 @@ from verification.robustness.fuzz import (
     good_scenes,
     lay,
 )
+from verification.robustness.hostile import SMALL
 from verification.robustness.kills import SAMFEM, Findings, finish, rows_of, start
 from verification.runs.archive import ArchiveError, read_archive
 from verification.runs.files import FolderError, json_text, read_run
@@ -246,7 +247,7 @@ def judge_commands(
         (folder / "cwd").mkdir(parents=True)
         path = lay(bad, folder / "cwd" / "out" if bad.kind == RUN else folder / "in")
         if bad.kind == RUN:
-            lay(bad_input(SEED, tuple(KINDS).index("titles")), folder / "cwd")
+            (folder / "cwd" / SCENE).write_text(SMALL)
         prepared.append((number, bad.kind, folder, words_for(bad, path, number)))
 
     def ended(each: tuple) -> tuple:
@@ -279,7 +280,7 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     reads, runs = READ[context.level], RUNS[context.level]
     with tempfile.TemporaryDirectory(prefix="samfem-bad-input-") as base:
         read = judge_readers(range(reads), Path(base))
-        stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of kinds have no common factor
+        stride = range(reads, reads + 5 * runs, 5)  # 5 and the number of turns have no common factor
         progress = partial(context.progress, f"{context.case}: commands")
         yield from judged(read, judge_commands(stride, Path(base), progress=progress))
 
@@ -299,7 +300,7 @@ def judged(read: Tally, ran: Tally) -> Iterator[dict[str, Any]]:
         for (_, end), count in list(counts.items()):
             counts["all", end] += count
         ends = sorted({end for _, end in counts})
-        for kind in (*KINDS, "all"):
+        for kind in dict.fromkeys((*KINDS, *sorted(kind for kind, _ in counts if kind != "all"), "all")):
             yield {"sweep": words, "kind of input": kind} | {end: counts[kind, end] for end in ends}
     for tally in (read, ran):
         yield {"sweep": "Slowest", "time [s]": tally.slowest[0], "input": tally.slowest[1].partition(":")[0]}

@@ -158,29 +158,27 @@ def unless(right: bool, what: str, reason: str) -> list[Deviation]:
     return [Deviation(what, float(not right), 0.5, reason)]
 
 
-def against(target: str | Mapping[str, Any], bounds: Mapping[str, float], reason: str = "") -> Check:
+def against(
+    trial: Trial, target: str | Mapping[str, Any], bounds: Mapping[str, float], reason: str = ""
+) -> list[Deviation]:
     """Quantities, each within its own bound, against a closed form of FORMS, against another model (which is
     itself compared with SAM), or against the scene with other values in the same model; no reason: it is the
     size of the cells.
     """
-
-    def check(trial: Trial) -> list[Deviation]:
-        expected: Mapping[str, Any]
-        if not isinstance(target, str):
-            words = f"as with {', '.join(f'{key} = {value}' for key, value in target.items())}"
-            expected = trial.of(other(trial.scene, target)).quantities
-        elif target in FORMS:
-            words, exact = target, FORMS[target](trial.scene)
-            expected = {name: VALUES[name](exact, trial.scene.body.poisson) for name in bounds}
-        else:
-            words = SAM if trial.model == target else target
-            expected = trial.bench.converged(trial.scene, words).quantities
-        return [
-            relative(f"{name}, {words}", (trial[name], expected[name]), bound, reason or COARSE[trial.model])
-            for name, bound in bounds.items()
-        ]
-
-    return check
+    expected: Mapping[str, Any]
+    if not isinstance(target, str):
+        words = f"as with {', '.join(f'{key} = {value}' for key, value in target.items())}"
+        expected = trial.of(other(trial.scene, target)).quantities
+    elif target in FORMS:
+        words, exact = target, FORMS[target](trial.scene)
+        expected = {name: VALUES[name](exact, trial.scene.body.poisson) for name in bounds}
+    else:
+        words = SAM if trial.model == target else target
+        expected = trial.bench.converged(trial.scene, words).quantities
+    return [
+        relative(f"{name}, {words}", (trial[name], expected[name]), bound, reason or COARSE[trial.model])
+        for name, bound in bounds.items()
+    ]
 
 
 def coarser(scene: Scene, model: str, fine: Result) -> Scene:
@@ -193,42 +191,34 @@ def coarser(scene: Scene, model: str, fine: Result) -> Scene:
     return other(scene, {"grid": {"cells": fewer, "extent": extent}})
 
 
-def within_refinement(name: str) -> Check:
+def within_refinement(trial: Trial, name: str) -> list[Deviation]:
     """A quantity of SAM and axisymmetric FEM, within the refinement uncertainties of both.
 
     The uncertainty is Richardson's for first order, the least that a converging value has: h/(1.5 h - h) = 2
     times what the step from cells 1.5 times as large changes.
     """
-
-    def check(trial: Trial) -> list[Deviation]:
-        model = FEM if trial.model == SAM else SAM
-        twin, sizes = trial.bench.converged(trial.scene, model), []
-        for each, fine in ((trial.model, trial.result), (model, twin)):
-            coarse = trial.bench.converged(coarser(trial.scene, each, fine), each)
-            sizes.append(2.0 * abs(fine.quantities[name] - coarse.quantities[name]))
-        value, difference = abs(trial[name]), abs(trial[name] - twin.quantities[name])
-        shares = " + ".join(f"{1e2 * size / value:.2g}" for size in sizes)
-        words = f"{name}, {model}, over both refinement uncertainties ({shares} %)"
-        return [
-            Deviation(words, difference / sum(sizes), 1.0, "cells 1.5 times as large, first order"),
-            Deviation(f"{name}, its uncertainties", sum(sizes) / value, 0.25, "or the row tests nothing"),
-        ]
-
-    return check
+    model = FEM if trial.model == SAM else SAM
+    twin, sizes = trial.bench.converged(trial.scene, model), []
+    for each, fine in ((trial.model, trial.result), (model, twin)):
+        coarse = trial.bench.converged(coarser(trial.scene, each, fine), each)
+        sizes.append(2.0 * abs(fine.quantities[name] - coarse.quantities[name]))
+    value, difference = abs(trial[name]), abs(trial[name] - twin.quantities[name])
+    shares = " + ".join(f"{1e2 * size / value:.2g}" for size in sizes)
+    words = f"{name}, {model}, over both refinement uncertainties ({shares} %)"
+    return [
+        Deviation(words, difference / sum(sizes), 1.0, "cells 1.5 times as large, first order"),
+        Deviation(f"{name}, its uncertainties", sum(sizes) / value, 0.25, "or the row tests nothing"),
+    ]
 
 
-def without(name: str, words: str) -> Check:
+def without(trial: Trial, name: str, words: str) -> list[Deviation]:
     """A quantity has no uncertainty, and the reason has these words."""
-
-    def check(trial: Trial) -> list[Deviation]:
-        entry = trial.result.uncertainty[name]
-        right = entry["u_num"] is None and words in entry["flag"]
-        return unless(right, f"no uncertainty of {name}", "0: it is as expected, 1: it is not")
-
-    return check
+    entry = trial.result.uncertainty[name]
+    right = entry["u_num"] is None and words in entry["flag"]
+    return unless(right, f"no uncertainty of {name}", "0: it is as expected, 1: it is not")
 
 
-def as_twin(words: str, reason: str, twin: Callable[[Scene], Scene]) -> Check:
+def as_twin(trial: Trial, words: str, reason: str, twin: Scene) -> list[Deviation]:
     """The same approach as of another scene, and on the whole patch (maxima leave its border out) the same
     largest pressure and cells in contact.
     """
@@ -238,14 +228,11 @@ def as_twin(words: str, reason: str, twin: Callable[[Scene], Scene]) -> Check:
         touching = float(np.count_nonzero(pressure > 0))
         return {"approach": approach, "largest pressure": np.nanmax(pressure), "cells in contact": touching}
 
-    def check(trial: Trial) -> list[Deviation]:
-        expected = whole(trial.of(twin(trial.scene)))
-        return [
-            relative(f"{name}, {words}", (value, expected[name]), 1e-6, reason)
-            for name, value in whole(trial.result).items()
-        ]
-
-    return check
+    expected = whole(trial.of(twin))
+    return [
+        relative(f"{name}, {words}", (value, expected[name]), 1e-6, reason)
+        for name, value in whole(trial.result).items()
+    ]
 
 
 def pressed(name: str, force: float) -> Scene:
@@ -256,22 +243,22 @@ def pressed(name: str, force: float) -> Scene:
     )
 
 
-def as_patch(name: str) -> Check:
+def as_patch(trial: Trial, name: str) -> list[Deviation]:
     """As of a smaller patch that holds all that touches."""
     reason = "the cells beside are not touched: one discrete problem"
-    return as_twin("the part alone", reason, lambda scene: pressed(name, scene.loading.force))
+    return as_twin(trial, "the part alone", reason, pressed(name, trial.scene.loading.force))
 
 
-def as_sum(name: str) -> Check:
+def as_sum(trial: Trial, name: str) -> list[Deviation]:
     """As of the sum of the heights on the body under a plane."""
-    reason = "the same gap, rounded differently"
-    return as_twin("heights on the body", reason, lambda scene: pressed(name, 1.0))
+    return as_twin(trial, "heights on the body", "the same gap, rounded differently", pressed(name, 1.0))
 
 
-def turned(scene: Scene) -> Scene:
-    """The scene with its surface turned over in x."""
-    path = scene.surface.path
-    return other(scene, {"surface.path": HeightMap(path.values[::-1], path.extent)})
+def mirrored(trial: Trial) -> list[Deviation]:
+    """As of the surface turned over in x."""
+    path = trial.scene.surface.path
+    turned = other(trial.scene, {"surface.path": HeightMap(path.values[::-1], path.extent)})
+    return as_twin(trial, "mirrored in x", "a reflection", turned)
 
 
 def balanced(trial: Trial) -> list[Deviation]:
@@ -380,7 +367,7 @@ CHECKS: Mapping[str, Check] = {
     "frictionless": lambda trial: [
         Deviation("sum of q over sum of p", abs(trial["friction_coefficient"]), 1e-300, "there is no q")
     ],
-    "mirrored": as_twin("mirrored in x", "a reflection", turned),
+    "mirrored": mirrored,
     "no yield beyond": lambda trial: within_tolerance(trial, "yield_excess"),
     "nothing-touches": lambda trial: [
         Deviation(f"{name} without force", abs(trial[name]), 1e-300, "nothing touches") for name in NONE
@@ -394,7 +381,7 @@ CHECKS: Mapping[str, Check] = {
     "zero": zero,
 }
 """Checks by the names that rows give them."""
-MADE: Mapping[str, Callable[..., Check]] = {
+MADE: Mapping[str, Callable[..., list[Deviation]]] = {
     "refinement": within_refinement,
     "without": without,
     "patch": as_patch,
@@ -408,4 +395,6 @@ def check_of(said: str | list) -> Check:
     if isinstance(said, str):
         return CHECKS[said]
     target, *how = said
-    return MADE[target](*how) if isinstance(target, str) and target in MADE else against(target, *how)
+    if isinstance(target, str) and target in MADE:
+        return lambda trial: MADE[target](trial, *how)
+    return lambda trial: against(trial, target, *how)

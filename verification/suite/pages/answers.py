@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatch
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -197,11 +198,6 @@ def value(
             yield Finding(words, shown.format(show(found)), (each,), each, [row], allowed)
 
 
-def share(evidence: Evidence, words: str, gate: str, *how: str) -> Iterator[Finding]:
-    """The same in per cent."""
-    return value(evidence, words, gate, *how, in_percent=True)
-
-
 def spread(evidence: Evidence, words: str, gates: str, shown: str) -> Iterator[Finding]:
     """The least and the largest value of some gates."""
     if found := [(each, row) for each, row in evidence.gates(gates) if row["error"] is not None]:
@@ -261,7 +257,7 @@ PARTS: Mapping[str, Callable[..., Iterator[Finding]]] = {
     "largest": largest,
     "held": held,
     "value": value,
-    "percent": share,
+    "percent": partial(value, in_percent=True),
     "range": spread,
     "cell": cell,
     "times": times,

@@ -263,7 +263,10 @@ def write_report(
     if not alone:
         _write_pages(read_stored(results, stale), Look(folder, place=place))
     if alone or single_file:
-        write_atomically(folder / ONE_FILE, _one_file(results, folder).encode())
+        stored, look = read_stored(results), Look(folder, embed=True)
+        cases = [case_view(each, look) for each in _ordered(stored.ran.values())]
+        page = _page("single.html.j2", stored, look, cases=cases, origins=origins(stored.ran.values()))
+        write_atomically(folder / ONE_FILE, page.encode())
     return folder / (ONE_FILE if alone or single_file else INDEX)
 
 
@@ -271,10 +274,19 @@ def _write_pages(stored: Stored, look: Look) -> None:
     """Write index.html, README.md and a page for each group; report.html leads to the index."""
     evidence = Evidence(stored, pairs_of(stored))
     answers = answers_of(evidence)
-    pages = {
-        f"{group['name']}.html": _group_page(group, cases, answers, stored=stored, look=look)
-        for group, cases in _groups(stored)
-    }
+    pages = {}
+    for group, cases in _groups(stored):
+        pages[f"{group['name']}.html"] = _page(
+            "group.html.j2",
+            stored,
+            look,
+            headline=headline_of(stored) if group["name"] == PAGE else None,
+            answers=[each for each in answers if each.question["page"] == group["name"]],
+            group=group,
+            cases=[case_view(each, look) for each in cases],
+            waiting=[row for row in stored.waiting if group_of(row[0]) == group],
+            origins=origins(cases),
+        )
     for name, template in ((INDEX, "index.html.j2"), (README, "README.md.j2"), (ONE_FILE, "moved.html.j2")):
         pages[name] = _index(template, evidence, answers, look)
     remove_pages(look.folder)
@@ -290,14 +302,6 @@ def remove_pages(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def _one_file(results: Mapping, folder: Path) -> str:
-    """All cases on one page that needs no other file; also of a comparison."""
-    stored = read_stored(results)
-    look = Look(folder, embed=True)
-    cases = [case_view(each, look) for each in _ordered(stored.ran.values())]
-    return _page("single.html.j2", stored, look, cases=cases, origins=origins(stored.ran.values()))
-
-
 def _groups(stored: Stored) -> Iterator[tuple[dict, list[ShownCase]]]:
     """The groups of which a case ran, with these: failed first, then by the share of the tolerance used."""
     for group in GROUPS:
@@ -308,22 +312,6 @@ def _groups(stored: Stored) -> Iterator[tuple[dict, list[ShownCase]]]:
 
 def _ordered(cases: Iterable[ShownCase]) -> list[ShownCase]:
     return sorted(cases, key=lambda each: (not each.failed, -each.used))
-
-
-def _group_page(
-    group: dict, cases: list[ShownCase], answers: list[Answer], *, stored: Stored, look: Look
-) -> str:
-    return _page(
-        "group.html.j2",
-        stored,
-        look,
-        headline=headline_of(stored) if group["name"] == PAGE else None,
-        answers=[each for each in answers if each.question["page"] == group["name"]],
-        group=group,
-        cases=[case_view(each, look) for each in cases],
-        waiting=[row for row in stored.waiting if group_of(row[0]) == group],
-        origins=origins(cases),
-    )
 
 
 def _contact(stored: Stored, look: Look) -> dict | None:
