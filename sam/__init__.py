@@ -6,7 +6,7 @@ from typing import Any
 
 _WHERE = {
     "Load": "sam.schedule",
-    "PeriodicHalfSpaces": "sam.contact.periodic",
+    "PeriodicHalfSpaces": "sam.contact.operators",
     "Plan": "sam.elastic.problem",
     "Search": "sam.contact.normal",
     "UnsupportedScene": "sam.planner.make",

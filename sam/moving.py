@@ -17,12 +17,10 @@ from typing import Any
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.stress import von_mises
+from sam.contact.operators import von_mises
 from sam.grid.cells import CellGrid, Window
-from sam.results.history import History, Moved, PassEnd, Row
-from sam.results.quantities import refined_peak
-from sam.results.snapshots import Snapshot
-from sam.scene.groove import RUN_IN, RUN_OUT, Groove, passes_to_steady, steady_part
+from sam.results.history import History, Moved, PassEnd, Row, Snapshot
+from sam.results.tables import refined_peak
 from sam.scene.result import (
     CROSS,
     OF_PASSES,
@@ -35,6 +33,7 @@ from sam.scene.result import (
     VISITS,
 )
 from sam.scene.surface import Strip
+from sam.scene.verdict import RUN_IN, RUN_OUT, Groove, passes_to_steady, steady_part
 from sam.schedule import Load
 from sam.tribofilm.state import TribofilmState, Visits, bins_of_visits
 
@@ -44,19 +43,11 @@ LONG = 0.5  # contact radii: longer steps leave 3 % of the groove and 13 % of th
 
 
 @dataclass(frozen=True)
-class Growth:
-    """Of a film out of contact. rate: see `sam.tribofilm.state.entered`; speed: in m/s."""
-
-    rate: float
-    speed: float
-
-
-@dataclass(frozen=True)
 class Track:
     """The track of a scene, in m: start, end; radius: of the contact along x; curvatures: of the
     counter-body; step; plane: below one every place is steady; carries: share of the motion of the
     pressure; strip: of a rough counter-body; period: from pass to pass; returns: even passes go
-    back; growth: of a film.
+    back; growth_rate: of a film out of contact in 1/sqrt(m), or None; speed in m/s.
     """
 
     start: tuple[float, float]
@@ -69,7 +60,8 @@ class Track:
     strip: Strip | None = None
     period: float = 0.0
     returns: bool = False
-    growth: Growth | None = None
+    growth_rate: float | None = None
+    speed: float = nan
 
     @property
     def along_x(self) -> bool:
@@ -233,7 +225,9 @@ Tables = dict[str, dict[str, Any]]
 def path_tables(track: Track, grid: CellGrid, history: History, film: TribofilmState | None) -> Tables:
     """The tables of passes and visits of a film; track and cross of a body that yielded on a path in x."""
     last, passes = list(history.snapshots.values())[-1], history.passes
-    tables: Tables = {"passes": _passes(passes)} if passes else {}
+    of_pass, tables = zip(PASSES, fields(PassEnd), strict=True), Tables()
+    if passes:
+        tables["passes"] = {name: [getattr(end, each.name) for end in passes] for name, each in of_pass}
     worn = last.worn is not None
     if passes and (worn or film is not None):
         tables["passes"] |= _surface_of_passes(track, history)
@@ -266,11 +260,6 @@ def path_quantities(track: Track, grid: CellGrid, history: History) -> dict[str,
     }
 
 
-def _passes(passes: Sequence[PassEnd]) -> dict[str, Any]:
-    of_pass = zip(PASSES, fields(PassEnd), strict=True)
-    return {name: [getattr(passed, field.name) for passed in passes] for name, field in of_pass}
-
-
 def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:
     """What friction and wear did in each pass: work of the driving force, means over the way at full load."""
     ends = {end.cycle: end.wear_of_cycle for end in history.ends if end.worn is not None}
@@ -297,14 +286,14 @@ def _surface_of_passes(track: Track, history: History) -> dict[str, Any]:
 
 def _visits(track: Track, visits: Visits) -> dict[str, Any]:
     """How many cells were out of contact for how long, up to each way, from the first bin that is used."""
-    ways, growth = bins_of_visits(track.period), track.growth
+    ways, rate = bins_of_visits(track.period), track.growth_rate
     first = int(np.flatnonzero(visits.counts)[0]) if visits.counts.any() else len(ways) - 1
     count = len(ways) - first
     unknown = np.full(len(ways), np.nan)
     columns = (
         ways,
-        unknown if growth is None else ways / growth.speed,
-        unknown if growth is None else growth.rate * np.sqrt(ways),
+        unknown if rate is None else ways / track.speed,
+        unknown if rate is None else rate * np.sqrt(ways),
         visits.counts.astype(int),
     )
     return {name: values[-count:] for name, values in zip(VISITS, columns, strict=True)}

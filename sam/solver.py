@@ -14,21 +14,28 @@ import numpy as np
 
 from sam.contact.convolution import Counters
 from sam.contact.normal import Contact, fit_of
-from sam.elastic.history import solve_elastic
-from sam.elastic.problem import ElasticProblem, Plan
-from sam.elastic.stress import elastic_peak, yields
+from sam.elastic.problem import ElasticProblem, Plan, elastic_peak, solve_elastic, yields
 from sam.grid.cells import Room, Sides, enlarged, enlargement, how_to_enlarge
 from sam.moving import path_quantities, path_tables
 from sam.planner.bodies import Bodies
-from sam.planner.make import check_bodies, plan_of
-from sam.planner.stages import left_out_of_unyielding
+from sam.planner.make import check_bodies, left_out_of_unyielding, plan_of
 from sam.plasticity.history import on_larger_grid, solve_plastic
-from sam.plasticity.progress import Progressed
-from sam.results.history import History, Row, cycles_table, history_table, loops_table, of_ends
-from sam.results.mesh import cycle_grids, field_mesh, state_grids
-from sam.results.quantities import EVEN, quantities, with_extrapolation
-from sam.results.snapshots import Snapshot
-from sam.results.tables import advice, state_tables
+from sam.plasticity.model import Progressed
+from sam.results.history import History, Row, Snapshot, cycles_table, history_table, loops_table, of_ends
+from sam.results.tables import (
+    EVEN,
+    advice,
+    cycle_grids,
+    field_mesh,
+    quantities,
+    rough_discretisation,
+    rough_quantities,
+    rough_warnings,
+    state_grids,
+    state_tables,
+    surface_table,
+    with_extrapolation,
+)
 from sam.scene import Result, Scene, Status
 from sam.scene.checkpoint import Checkpoint, Keep, check_model
 from sam.scene.result import (
@@ -98,32 +105,24 @@ def solve(
     return with_extrapolation(before, fine, finds_force=plan.schedule.peak.approach is not None)
 
 
-class _Clock:
-    """Times in s of set-up and solve, with those of the parts of the solve that an interruption ended."""
-
-    def __init__(self, before: Mapping[str, Any] | None):
-        self.before = before or {"setup_s": 0.0, "solve_s": 0.0}
-        self.began = self.ready = time.perf_counter()
-
-    def times(self) -> dict[str, float]:
-        """Both times so far."""
-        setup, solving = self.ready - self.began, time.perf_counter() - self.ready
-        return {"setup_s": self.before["setup_s"] + setup, "solve_s": self.before["solve_s"] + solving}
-
-
 KeepRecord = Callable[[Progressed, int, int], None]
 
 
 def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Checkpoint | None) -> Result:
     """The result of a plan, on a larger grid where plastic zone or contact reach the edge of a chosen one."""
-    clock, counters, first = _Clock(start.cost if start else None), Counters(), plan.grid
+    began, counters, first = time.perf_counter(), Counters(), plan.grid
+    earlier = start.cost if start else {"setup_s": 0.0, "solve_s": 0.0}  # before an interruption
     record = start.record(Progressed) if start is not None else None
     plan = plan if record is None else plan.on(record.room)
-    clock.ready = time.perf_counter()
+    ready = time.perf_counter()
+
+    def times() -> dict[str, float]:
+        solving = time.perf_counter() - ready
+        return {"setup_s": earlier["setup_s"] + (ready - began), "solve_s": earlier["solve_s"] + solving}
 
     def keep(record: Progressed, done: int, total: int) -> None:
         if checkpoint is not None:
-            checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=clock.times()))
+            checkpoint(Checkpoint.of(MODEL, record, done=done, total=total, cost=times()))
 
     keeper = keep if checkpoint is not None else None
     history, record = _on_grid(plan, counters, report, keep=keeper, start=record)
@@ -138,7 +137,7 @@ def _executed(plan: Plan, report: Progress, checkpoint: Keep | None, start: Chec
         history,
         record,
         counters=counters,
-        cost=clock.times() | {name: getattr(counters, name) for name in COUNTED.split()},
+        cost=times() | {name: getattr(counters, name) for name in COUNTED.split()},
     )
     if plan.grid.room == Room():
         return result
@@ -194,7 +193,8 @@ def _status(rows: Sequence[Row], peak: Contact, plan: Plan) -> Status:
 
 def _warnings(plan: Plan, peak: Snapshot) -> tuple[str, ...]:
     """What a user should know about a rough or coated peak."""
-    out = plan.rough.warnings(plan.grid, peak.contact) if plan.rough is not None else ()
+    rough = plan.rough
+    out = () if rough is None else rough_warnings(rough, plan.remedies, plan.grid, peak.contact)
     comparison = peak.coated.comparison if peak.coated is not None else None
     return (*out, comparison.warning) if comparison is not None and comparison.warning else out
 
@@ -209,7 +209,7 @@ def _result(
         left_out += left_out_of_unyielding(plan)
     if status is Status.NOT_CONVERGED:
         ending = next((row.ending for row in history.rows if row.ending), "")
-    peak, heights = states[0], rough.heights if rough is not None else None
+    peak, heights = states[0], rough.of_body if rough is not None else None
     verdicts: Sequence[Verdict] = ()
     if judging is not None:  # a body that yields nowhere has them without any strain
         verdicts = (UNSTRAINED,) * (steps.cycles // judging.period)
@@ -222,7 +222,7 @@ def _result(
         kinks=EVEN if plan.plasticity is None or record is None else plan.plasticity.strength().kinks,
         centred=rough is None,
     )
-    values |= {} if rough is None else rough.quantities(grid, peak.contact)
+    values |= {} if rough is None else rough_quantities(grid, peak.contact)
     tables = _tables(plan, history, verdicts)
     if plan.track is not None:
         at_edge = status is Status.CONTACT_AT_GRID_EDGE
@@ -247,7 +247,7 @@ def _result(
             "largest_depth_m": float(grid.depths[-1]),
             "contact_box_cells": [peak.contact.box.nx, peak.contact.box.ny],
             "contact_cells": int(np.count_nonzero(peak.contact.pressure)),
-            **(rough.discretisation() if rough is not None else {}),
+            **(rough_discretisation(rough) if rough is not None else {}),
             "tangential_kernels": counters.tangential_kernels,
             **history.discretisation,
         },
@@ -273,7 +273,7 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
     tables: dict[str, Any] = {"history": history_table(history.rows)}
     tables |= state_tables(grid, states, plan.pair.share)
     if rough is not None:
-        tables["surface"] = rough.table(grid, states)
+        tables["surface"] = surface_table(rough, grid, states)
     tables["residuals"] = residual_table(
         [*((row.cycle, row.step, row.attempts) for row in history.rows), *history.unfinished]
     )
@@ -292,7 +292,7 @@ def _tables(plan: Plan, history: History, verdicts: Sequence[Verdict]) -> dict[s
             tables["cycles"] |= verdict_columns(cycles, verdicts, plan.judging.period)
         if plan.wear is not None:
             tables["cycles"][ROOFED] = of_ends(cycles, ends, "roofed")
-            if plan.wear.roof_falls or plan.wear.fills:
+            if plan.wear.rule.roof == "falls" or plan.wear.rule.smoothing_fills:
                 parts = {column: of_ends(cycles, ends, name) for column, name in WEAR_PARTS.items()}
                 tables["cycles"] |= parts
         if plan.paper:

@@ -275,56 +275,32 @@ class WearState:
     bottom_columns: tuple[int, ...] = ()
     residuals: tuple[float, ...] = ()
 
-    @classmethod
-    def empty(cls, shape: tuple[int, int], hx: float, hy: float) -> WearState:
-        """The surface before the first cycle; hx, hy: cell in m."""
-        return cls(hx * hy, np.zeros(shape))
-
     @property
     def volume(self) -> float:
         """Removed so far, in m3."""
         return sum(self.volumes)
 
-    @property
-    def of_last_cycle(self) -> tuple[float, float, float, float, float]:
-        """In m3: removed, raw, roofed, roof, filled."""
-        raw, roofed, roof = self.raw_volumes[-1], self.roofed_volumes[-1], self.roof_volumes[-1]
-        return self.volumes[-1], raw, roofed, roof, self.filled_volumes[-1]
-
-    @property
-    def raw_volume(self) -> float:
-        """Raw removal so far, in m3; what smoothing left counts again when it is removed again."""
-        return sum(self.raw_volumes)
-
     def volume_of(self, thickness: Array) -> float:
         """Volume in m3 of a layer of this thickness in m on the cells, (nx, ny)."""
         return float(self.cell_area * thickness.sum())
 
-    def imbalance(self, original: Array, current: Array) -> float:
-        """Volume minus hx hy sum(original - current), in m3; heights (nx, ny) in m, undisplaced."""
-        return self.volume - self.volume_of(original - current)
-
 
 @dataclass(frozen=True)
 class WearLaw:
-    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain. fills: the
-    filter may leave or raise what is removed; wraps: whether all repeats along x and along y.
+    """Wear of a grid of `shape` (nx, ny) cells hx, hy in m, at limits of the plastic strain. rule: of the
+    scene; wraps: whether all repeats along x and along y.
     """
 
     shape: tuple[int, int]
     hx: float
     hy: float
     limits: StrainLimits
-    interpolate: bool
-    window: int
-    order: int
+    rule: Wear
     wraps: Wraps = (False, False)
-    roof_falls: bool = False
-    fills: bool = False
 
     def fresh(self) -> WearState:
         """The surface before the first cycle."""
-        return WearState.empty(self.shape, self.hx, self.hy)
+        return WearState(self.hx * self.hy, np.zeros(self.shape))
 
     def margin(self, peeq: Array, faces: Array) -> float:
         """1 less the largest plastic strain of cells, (n_layers, nx, ny), over its limit; faces in m."""
@@ -343,13 +319,14 @@ class WearLaw:
         """Wear after one more cycle; below the new surface the cells of a window that are not fresh,
         (n_layers, nx, ny), and the fields (..., n) of these. peeq: the accumulated strain that decides.
         """
-        raw = worn_depth(peeq, faces, self.limits, self.interpolate, roof_falls=self.roof_falls)
+        rule, filter_by = self.rule, (self.rule.smoothing_window, self.rule.smoothing_order)
+        raw = worn_depth(peeq, faces, self.limits, rule.interpolate, roof_falls=rule.roof == "falls")
         depth, roofed, roof = (self._on_grid(each, window) for each in raw[:3])
         whole = Worn(depth, roofed, roof, self._on_grid(raw.at_bottom, window))
-        if self.fills:
-            depth = filtered(whole.depth, self.window, self.order, wraps=self.wraps)
+        if rule.smoothing_fills:
+            depth = filtered(whole.depth, *filter_by, wraps=self.wraps)
         else:
-            depth = smoothed(whole.depth, self.window, self.order, all_removed=True, wraps=self.wraps)
+            depth = smoothed(whole.depth, *filter_by, all_removed=True, wraps=self.wraps)
         columns = cells.any(axis=0)  # all others are fresh, and stay so
         below, worst, worn = {}, 0.0, depth[window.slices][columns][:, None]
         before, after = cells[:, columns], cells.copy()

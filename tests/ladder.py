@@ -195,7 +195,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "stresses": _more_rows,
         "moved_rows": lambda a: "u{} under F{} in y = 0".format(*a["moved_by"]),
         "bare_body": "bare comparison",
-        "stress.yields": "yield stress",
+        "problem.yields": "yield stress",
         "BoxOperator.__init__": "plastic box",
         "mean_stress_of_load": lambda a: "sliding plastic box" if a["load"] == 1 else "plastic box",
         "Problem.step": "plastic step",

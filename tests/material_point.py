@@ -9,7 +9,7 @@ from scipy.optimize import fsolve
 from fem_reference.common.back_stress import BackStresses, KinematicJ2
 from fem_reference.common.bodies import Elastic
 from fem_reference.common.plasticity import History
-from sam.plasticity.flow import KinematicMaterial, equivalent_strain
+from sam.plasticity.flow import BackStressFields, KinematicMaterial, equivalent_strain
 
 YOUNG, POISSON = 210e9, 0.3
 MU, BULK = YOUNG / 2 / (1 + POISSON), YOUNG / 3 / (1 - 2 * POISSON)
@@ -21,7 +21,9 @@ class SamPoint:
 
     def __init__(self, curve, modulus, recovery, factor=1.0):
         back = [np.reshape(np.array(values, dtype=float), (-1, 1, 1, 1)) for values in (modulus, recovery)]
-        self.material = KinematicMaterial.of(MU, curve, np.full(1, factor), (factor * back[0], back[1]))
+        self.material = KinematicMaterial(
+            MU, curve, np.full(1, factor), BackStressFields(factor * back[0], back[1])
+        )
         self.state = self.material.virgin((1, 1, 1))
 
     def at(self, strain):

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import sam
 import sam.plasticity.history as solution
 from sam.contact.convolution import Counters
-from sam.elastic.stress import elastic_peak
+from sam.elastic.problem import elastic_peak
 from sam.grid.cells import Window
 from sam.plasticity import Extent, Model, Progressed
 from sam.plasticity.history import begun, first_box
@@ -22,7 +22,7 @@ def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tupl
     model = model_of(plan, plan.problem(Counters()))
     if extent is not None:
         return model, begun(model, [], extent(model))
-    peak = elastic_peak(model.elastic, plan.schedule.peak)
+    peak = elastic_peak(model, plan.schedule.peak)
     return model, begun(model, [], first_box(model, peak))
 
 

@@ -19,8 +19,8 @@ from fem_reference.common.contact import Equilibrium
 from fem_reference.common.loading import Step
 from fem_reference.common.recovery import parabola_peak
 from fem_reference.common.tables import columns
-from sam.scene.groove import Groove, passes_to_steady, steady_part
 from sam.scene.result import PASSES, PATH_HISTORY, PATH_QUANTITIES, TRACK, UNLOADED, Table
+from sam.scene.verdict import Groove, passes_to_steady, steady_part
 
 
 @dataclass(frozen=True)

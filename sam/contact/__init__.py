@@ -7,7 +7,7 @@ Uses the influence coefficients of `sam.kernels` and `sam.layered`. Used by `sam
 
 from sam.contact.convolution import Convolution, Counters, convolution_onto
 from sam.contact.normal import Contact, Search, around, solve_contact
-from sam.contact.stress import stresses, von_mises
+from sam.contact.operators import stresses, von_mises
 
 __all__ = [
     "Contact",

@@ -361,12 +361,8 @@ class _Iteration:
         state.negative = bool(state.p.min() < 0)
         fallen = product <= self.bodies.restart_threshold**2 * state.first
         if state.negative and (fallen or state.since >= LONGEST):
-            self._project(state, separation, control)
+            p = control.scaled(np.maximum(state.p, 0.0), state.count)  # paper Eq. 9: p >= 0
+            change = ((p - state.p) / state.unit).astype(self.bodies.real)
+            separation += state.unit * self._apply(state.spread(change))
+            state.p, state.negative = p, False
         return True
-
-    def _project(self, state: _State, separation: Array, control: Control) -> None:
-        """Project the pressure onto p >= 0, with the sum that may be given, and update its displacement."""
-        p = control.scaled(np.maximum(state.p, 0.0), state.count)  # paper Eq. 9: p >= 0
-        change = ((p - state.p) / state.unit).astype(self.bodies.real)
-        separation += state.unit * self._apply(state.spread(change))
-        state.p, state.negative = p, False

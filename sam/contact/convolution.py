@@ -457,13 +457,12 @@ class MirroredConvolution(BoxConvolution):
 
 
 class PeriodicConvolution(BoxConvolution):
-    """The same on all cells of a period, of a kernel that repeats with it; mirrored: as above."""
+    """The same on all cells of a period, by the transform of a kernel that repeats with it; mirrored: as
+    above.
+    """
 
-    def __init__(self, kernel: Real, mirrored: bool, counters: Counters):
-        self.shape, self.counters, self.mirrored = (kernel.shape[0], kernel.shape[1]), counters, mirrored
-        self.spectrum = fft.rfft2(kernel).real
-        if mirrored:
-            self.spectrum = self.spectrum[: self.shape[0] // 2 + 1]
+    def __init__(self, spectrum: Real, shape: tuple[int, int], mirrored: bool, counters: Counters):
+        self.spectrum, self.shape, self.mirrored, self.counters = spectrum, shape, mirrored, counters
 
     def _apply(self, field: Real, spectrum: Real) -> NDArray[Any]:
         if self.mirrored:

@@ -5,20 +5,31 @@ between windows of a grid of cells.
 Units as in `sam.contact.normal`: lengths in cells hx, pressures as p_hat = 2 p/E*. A homogeneous pair then
 holds no material constant; a coated one depends on the thickness in cells, so it knows its cell, and a
 coarser grid has another one.
+
+Two half-spaces under tractions that repeat with the grid: what is asked of them in place of single ones.
+
+A mean traction moves a half-space without bound. Displacements are therefore those about their mean, and the
+approach is that of the mean planes of the deformed surfaces: at most the mean of the gap, where all of the
+patch touches. The mean stress is laterally uniform: under a mean pressure p it is -p in 33 and, where the
+body cannot spread, -nu/(1 - nu) p in 11 and 22.
+
+Elastic stresses under surface tractions in a window of the grid, paper Eq. 7, first sum; and the total
+strains at the surface of a body, which a tribofilm that is bonded to it shares.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import fft
 
-from sam.arrays import Array
+from sam.arrays import Array, Mask
 from sam.contact.convolution import (
     FEW_CELLS,
     BoxConvolution,
@@ -28,18 +39,14 @@ from sam.contact.convolution import (
     MirroredConvolution,
     PeriodicConvolution,
     Real,
-    between_pairs,
     convolution_onto,
-    cropped,
-    filtered,
     half_length,
-    transformed,
 )
 from sam.grid.cells import CellGrid, Window
 from sam.half_space import ElasticConstants, ElasticPair
-from sam.kernels.patches import Lags, displacement_coefficients, parity
-from sam.layered.patches import LayeredPatches
-from sam.layered.response import Layers
+from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
+from sam.kernels.waves import in_cells, load_waves, strain_displacement_waves, whole_waves
+from sam.layered.patches import LayeredPatches, Layers
 
 WAVES = 64  # wave numbers of a bound: 1024 give one larger by less than 0.02 %, 8 one smaller by 0.8 %
 
@@ -123,8 +130,7 @@ LINE = RepeatedAlongY()
 
 class CoatedBodies(HalfSpaces):
     """A coated body 1 and a homogeneous body 2; a traction's coupling is its coefficient. Plates
-    bend with a compliance like k^-4, so that the iteration may rest long. modulus: E* in Pa;
-    compliance, tangential: (1 - nu2^2)/E2, (1 - 2 nu2)/mu2 in 1/Pa of body 2, 0 if rigid.
+    bend with a compliance like k^-4, so that the iteration may rest long. hx: side of a cell in m.
     """
 
     most_iterations = 5000  # limit: a plate rests long before it moves on
@@ -134,17 +140,10 @@ class CoatedBodies(HalfSpaces):
         np.inf
     )  # p is projected in each iteration: 46 displacements on 65 x 65 cells, 53 at 0.4
 
-    def __init__(
-        self,
-        layered: LayeredPatches,
-        hx: float,
-        modulus: float,
-        *,
-        compliance: float = 0.0,
-        tangential: float = 0.0,
-    ):
-        self.layered, self.hx, self.modulus = layered, hx, modulus
-        self.compliance, self.tangential_compliance = compliance, tangential
+    def __init__(self, pair: CoatedPair, hx: float):
+        self.pair, self.hx = pair, hx
+        self.layered, self.modulus = pair.layered, pair.pair.contact_modulus
+        self.compliance, self.tangential_compliance = pair.compliance, pair.tangential_compliance
         self._known: dict[tuple[Lags, int], Array] = {}
         self._coarser: CoatedBodies | None = None
 
@@ -184,13 +183,7 @@ class CoatedBodies(HalfSpaces):
     def coarser(self) -> CoatedBodies:
         """The same bodies for cells twice as large; made once."""
         if self._coarser is None:
-            self._coarser = CoatedBodies(
-                self.layered,
-                2 * self.hx,
-                self.modulus,
-                compliance=self.compliance,
-                tangential=self.tangential_compliance,
-            )
+            self._coarser = CoatedBodies(self.pair, 2 * self.hx)
         return self._coarser
 
 
@@ -227,7 +220,9 @@ class SurfaceOperators:
     def box_operator(self, box: Window, mirrored: bool) -> BoxConvolution:
         """p_hat -> u_hat on a box; mirrored: of fields that are, on the kept quarter."""
         if self.bodies.periodic and box == self.whole and not (mirrored and self.odd):
-            return PeriodicConvolution(self.coefficients, mirrored, self.counters)
+            spectrum = fft.rfft2(self.coefficients).real
+            spectrum = spectrum[: self.shape[0] // 2 + 1] if mirrored else spectrum
+            return PeriodicConvolution(spectrum, self.shape, mirrored, self.counters)
         few = DirectConvolution if box.nx * box.ny <= FEW_CELLS else BoxConvolution
         return (MirroredConvolution if mirrored else few)(self.coefficients, box.shape, self.counters)
 
@@ -291,21 +286,10 @@ class SurfaceOperators:
         k[0, 0] = np.pi / max(box.nx, box.ny * self.aspect)  # any positive value: residuals have zero mean
         symbol = self.bodies.stiffness(k)
         symbol = (symbol / symbol.max()).astype(self.bodies.real)
-
-        if few := not mirrored and box.nx * box.ny <= FEW_CELLS:
-            matrix = between_pairs(fft.irfft2(symbol, box.shape).astype(symbol.dtype))
-
-        def apply(r: Real) -> Real:
-            self.counters.ffts += 2
-            if mirrored:
-                return filtered(r, box.shape, symbol)
-            if few:
-                return np.asarray((matrix @ r.ravel()).reshape(box.shape))
-            spectrum = transformed(r, box.shape)
-            spectrum *= symbol
-            return cropped(spectrum, box.shape, box.shape)
-
-        return apply
+        if not mirrored and box.nx * box.ny <= FEW_CELLS:
+            kernel = fft.irfft2(symbol, box.shape).astype(symbol.dtype)
+            return DirectConvolution(kernel, box.shape, self.counters)
+        return PeriodicConvolution(symbol, box.shape, mirrored, self.counters)
 
 
 def moved_rows(
@@ -353,13 +337,7 @@ class CoatedPair:
         """Their coefficients on a grid; those of the last one are kept."""
         if grid.hx not in self._known:
             self._known.clear()
-            self._known[grid.hx] = CoatedBodies(
-                self.layered,
-                grid.hx,
-                self.pair.contact_modulus,
-                compliance=self.compliance,
-                tangential=self.tangential_compliance,
-            )
+            self._known[grid.hx] = CoatedBodies(self, grid.hx)
         return self._known[grid.hx]
 
     def counter_uz(
@@ -374,3 +352,177 @@ class CoatedPair:
             return out
         moved = moved_rows(grid, traction, kernel, (3, 1), counters=counters)
         return out - self.tangential_compliance * grid.hx * moved
+
+
+@dataclass(frozen=True)
+class PeriodicHalfSpaces(HalfSpaces):
+    """Two homogeneous half-spaces under tractions that repeat; free: whether the mean of the lateral stress
+    is zero at each depth, else the mean of the lateral strain is.
+    """
+
+    free: bool = False
+    periodic = True
+
+    def coefficients(
+        self, wanted: Lags, cells: tuple[int, int], nu: float, *, component: int, load: int
+    ) -> Array:
+        """The same by the load on a cell and its images, about the mean."""
+        period, name = replace(wanted, nx=cells[0], ny=cells[1]), (str(component),)
+        waves = load_waves("displacement", name, period, nu, load=load)  # paper Eq. 5
+        return in_cells(waves, cells, name, load)[0, : wanted.nx, : wanted.ny]
+
+    def own(self, coefficients: Array, aspect: float) -> float:
+        """That of a single cell, whatever the period."""
+        return HALF_SPACES.own(HALF_SPACES.normal(1, 1, aspect), aspect)
+
+    def moved(self, strain: Array, cells: Cuboids, component: int) -> Array:
+        """Displacement of the surface by plastic strain, (6, layers, nx, ny), in m. Paper Eq. 6."""
+        lags, faces = cells.lags, cells.depths / cells.lags.hx
+        waves = strain_displacement_waves(lags.in_units_of(lags.hx), faces.tolist(), cells.nu, component)
+        total = (whole_waves(waves, lags.nx, STRESS, component) * fft.rfft2(strain)).sum(axis=(0, 1))
+        return np.asarray(lags.hx * fft.irfft2(total, s=lags.shape))
+
+    def mean_stress(self, tractions: Mapping[int, float], nu: float) -> Array:
+        """Stress (6,) of mean tractions on the body: load -> Pa."""
+        p, out = tractions.get(3, 0.0), np.zeros(6)
+        out[:3] = -p * np.array([0.0 if self.free else nu / (1 - nu)] * 2 + [1.0])
+        out[3:5] = -tractions.get(2, 0.0), -tractions.get(1, 0.0)
+        return out
+
+    def mean_residual(self, strain: Array, nu: float) -> Array:
+        """Stress/mu of a plastic strain uniform in layers, (6 layers, r), see `sam.plasticity.spectra`."""
+        e, out = strain.reshape(6, -1, strain.shape[-1]), np.zeros_like(strain)
+        if not self.free:
+            s = out.reshape(e.shape)
+            s[0], s[1] = (-2 / (1 - nu) * (e[i] + nu * e[1 - i]) for i in (0, 1))  # and s_i3 = 0
+            s[5] = -2 * e[5]
+        return out
+
+    def stresses(
+        self,
+        tractions: Mapping[int, Array],
+        cell: tuple[float, float],
+        depths: ArrayLike,
+        observed: Window,
+        *,
+        nu: float,
+        counters: Counters,
+    ) -> Array:
+        """See `sam.contact.operators.stresses`."""
+        loads = {load: field for load, field in tractions.items() if field.any()}
+        depths, (hx, hy) = np.asarray(depths, dtype=float), cell
+        means = self.mean_stress({load: float(field.mean()) for load, field in loads.items()}, nu)
+        out = np.empty((6, len(depths), *observed.shape))
+        out[:] = means[:, None, None, None]
+        counters.tangential_kernels += any(load != 3 for load in loads)
+        transforms = [(load, field.shape, fft.rfft2(field)) for load, field in loads.items()]
+        for at, z in enumerate(depths / hx) if loads else ():
+            total: Any = 0.0
+            for load, (nx, ny), transform in transforms:
+                waves = load_waves("stress", STRESS, Lags(nx, ny, 1.0, hy / hx), nu, load=load, depths=[z])
+                total = total + whole_waves(waves, nx, STRESS, load) * transform
+            counters.ffts += 6
+            out[:, at] += fft.irfft2(total, s=(nx, ny))[(..., *observed.slices)]  # paper Eq. 7, first sum
+        return out
+
+
+DEPTHS_AT_ONCE = 16  # bounds the memory of the spectra
+MIRRORED = 1e-9  # of the largest traction: within the tolerance of a contact
+
+
+def stresses(
+    tractions: Mapping[int, Array],
+    cell: tuple[float, float] | tuple[float, float, int],
+    depths: ArrayLike,
+    observed: Window,
+    *,
+    nu: float,
+    layered: LayeredPatches | None = None,
+    counters: Counters | None = None,
+) -> Array:
+    """Stress in Pa under tractions on the surface, at the centres of the observed cells, (6, nz, nx, ny);
+    components 11 22 33 23 13 12, tension positive. Paper Eq. 7, first sum.
+
+    tractions: direction of the load (1, 2, 3: q_x, q_y, p, on the body, p > 0 compressive) -> (nx, ny) in Pa
+    on the whole grid; one that is left out costs nothing. cell: (hx, hy), sides in m; third the cells along y
+    after which the tractions repeat, if they do. depths: (nz,) in m. layered: coefficients of a coated body,
+    in place of nu. counters: where the work is counted.
+    """
+    (hx, hy, *period), depths = cell, np.asarray(depths, dtype=float)
+    total = np.zeros((len(STRESS), len(depths), *observed.shape))
+    for load, traction in tractions.items():
+        source = _loaded(traction)
+        if source is None:
+            continue
+        lags = Convolution.lags_needed(source, observed)
+        if counters is not None and load != 3:
+            counters.tangential_kernels += 1
+        needed = _needed(traction, load, observed)
+        names = tuple(STRESS[k] for k in needed)
+        parities = [parity(name, load) for name in names]
+        for k in range(0, len(depths), DEPTHS_AT_ONCE):
+            some = depths[k : k + DEPTHS_AT_ONCE]
+            if layered is None:
+                in_cells = Lags(*lags, 1.0, hy / hx, *period)
+                kernels = stress_coefficients(in_cells, some / hx, nu, load=load, names=names)
+            else:
+                kernels = layered.stress(Lags(*lags, hx, hy), some, load=load, names=names)
+            each = [sign for sign in parities for _ in some]
+            convolution = convolution_onto(kernels, each, source, observed, counters=counters)
+            # paper Eq. 7, first sum
+            total[needed, k : k + len(some)] += convolution(traction[source.slices])
+    return total
+
+
+def _loaded(field: Array) -> Window | None:
+    """The smallest window that holds all that is not zero; None for a field of zeros."""
+    loaded = np.flatnonzero(field.any(axis=1)), np.flatnonzero(field.any(axis=0))
+    if not loaded[0].size:
+        return None
+    (i0, i1), (j0, j1) = ((hit[0], hit[-1] + 1) for hit in loaded)
+    return Window(int(i0), int(j0), int(i1 - i0), int(j1 - j0))
+
+
+def _needed(field: Array, load: int, observed: Window) -> list[int]:
+    """The components that are not zero by symmetry: in the row of a mirrored field those even in y."""
+    everything = list(range(len(STRESS)))
+    if observed.ny > 1 or 2 * observed.j0 + 1 != field.shape[1]:
+        return everything
+    if np.abs(field - field[:, ::-1]).max() > MIRRORED * np.abs(field).max():
+        return everything
+    return [k for k in everything if parity(STRESS[k], load)[1] > 0]
+
+
+def von_mises(stress: Array) -> Array:
+    """Von Mises stress (...) of stresses (6, ...), to compare in paper Eq. 8."""
+    s11, s22, s33, s23, s13, s12 = stress
+    normal = (s11 - s22) ** 2 + (s22 - s33) ** 2 + (s33 - s11) ** 2
+    return np.sqrt(normal / 2 + 3 * (s23**2 + s13**2 + s12**2))
+
+
+def yielding(mises: Array, limit: Array) -> Mask:
+    """Where material yields: its von Mises stress is above the yield stress, which broadcasts with it."""
+    return np.asarray(mises > limit)  # paper Eq. 8 does not hold
+
+
+def elastic_strain(stress: Array, young: float, poisson: float) -> Array:
+    """Elastic strains xx, yy, xy, zz of stresses (6, ...) in Pa, order 11 22 33 23 13 12."""
+    sxx, syy, szz, sxy = stress[0], stress[1], stress[2], stress[5]
+    parts = (
+        sxx - poisson * (syy + szz),
+        syy - poisson * (sxx + szz),
+        (1 + poisson) * sxy,
+        szz - poisson * (sxx + syy),
+    )
+    return np.stack(parts) / young
+
+
+def surface_strain(stress: Array, plastic: Array, depths: Array, *, young: float, poisson: float) -> Array:
+    """Total strains xx, yy, xy, zz of the surface, (4, nx, ny), from stress in Pa and plastic
+    strain, (6, n_layers, nx, ny): linear to z = 0 from two layers, the mean of one.
+    """
+    total = elastic_strain(stress[:, :2], young, poisson) + plastic[[0, 1, 5, 2], :2]
+    if total.shape[1] < 2:
+        return total[:, 0]
+    up: Array = (total[:, 0] - total[:, 1]) * depths[0] / (depths[1] - depths[0])
+    return total[:, 0] + up

@@ -196,14 +196,11 @@ class LayerStress:
             stress += image
             self._every(stress, out[:, k])
 
-    def of_image(self, layer: int) -> Iterator[Array]:
-        """The part of the free surface alone, (36, X, Y) by each source; layers in order, as in `of`."""
-        for rows in self._image(layer):
-            yield self._every(rows, np.empty((36, *rows.shape[1:])))
-
-    def of_full_space(self, layer: int) -> Iterator[Array]:
-        """The rest, that of the full space less the eigenstrain's own stress."""
-        for rows in self._full_space(layer):
+    def of_part(self, layer: int, image: bool) -> Iterator[Array]:
+        """The part of the free surface alone, or the rest, that of the full space less the eigenstrain's own
+        stress, (36, X, Y) by each source; layers in order, as in `of`.
+        """
+        for rows in self._image(layer) if image else self._full_space(layer):
             yield self._every(rows, np.empty((36, *rows.shape[1:])))
 
     def _every(self, rows: Array, out: Array) -> Array:

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Elastic coating bonded on an elastic half-space: frequency response and influence coefficients."""
 
-from sam.layered.patches import LayeredPatches
-from sam.layered.response import Layers, Response, normal_compliance
+from sam.layered.patches import LayeredPatches, Layers, Response, normal_compliance
 
 __all__ = [
     "LayeredPatches",

@@ -12,12 +12,9 @@ from typing import Any
 import numpy as np
 
 from sam.contact.operators import CoatedPair
-from sam.elastic.misfit import PROFILES, MisfitSphere
-from sam.elastic.problem import Demand, GivenHertz
-from sam.grid.cells import CellGrid, Sides
-from sam.grid.gap import Paraboloid, Punch, RoundedPunch, Shape, Uniform
-from sam.grid.rough import RoughDemand, RoughPatch
-from sam.grid.smooth import (
+from sam.elastic.problem import PROFILES, Demand, GivenHertz, MisfitSphere
+from sam.grid.cells import CellGrid, Paraboloid, Punch, RoundedPunch, Shape, Sides, Uniform
+from sam.grid.demands import (
     DEFAULT_EXTENT,
     FARTHEST,
     PUNCH_EXTENT,
@@ -25,6 +22,8 @@ from sam.grid.smooth import (
     GridDemand,
     MisfitDemand,
     PlasticDemand,
+    RoughDemand,
+    RoughPatch,
     contact_radius,
     elliptic_contact,
     line_load_reach,

@@ -12,9 +12,8 @@ from sam.plasticity.box import ExpectedBox, Zone, expected_sides, held, or_whole
 from sam.plasticity.flow import SHEAR, contraction
 from sam.plasticity.history import onward
 from sam.plasticity.measure import Strained, at_centres, surface_displacement
-from sam.plasticity.model import Model
+from sam.plasticity.model import Model, Progressed
 from sam.plasticity.points import POINTS, stress_at_points
-from sam.plasticity.progress import Progressed
 from sam.plasticity.spectra import BoxOperator
 from sam.plasticity.state import CellFields, Extent, MaterialFields
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from sam.arrays import Array, Mask
 from sam.contact.convolution import half_length
 from sam.contact.normal import around, margin_around
-from sam.contact.stress import yielding
-from sam.elastic.stress import ElasticPeak
+from sam.contact.operators import yielding
+from sam.elastic.problem import ElasticPeak
 from sam.grid.cells import CellGrid, Sides, Window, at_edge
 from sam.plasticity.points import OFFSET
 from sam.plasticity.spectra import CACHED_BOXES, SINGLE
@@ -104,11 +104,6 @@ def _about_zone(exceeds: Mask, grid: CellGrid) -> Extent:
     return Extent(Window(i, j, grid.nx - 2 * i, grid.ny - 2 * j), _layers(deep, grid))
 
 
-def _strained(trial: Trial) -> Mask:
-    """The cells of the box that a step has strained, (n_layers, nx, ny)."""
-    return trial.increment.cells
-
-
 def _layers(deep: NDArray[np.intp], grid: CellGrid) -> int:
     """Layers down to one below the deepest of those that would yield, two at least."""
     return min(int(deep[-1]) + 2 if deep.size else 2, len(grid.depths))
@@ -121,7 +116,7 @@ def growth(count: int) -> int:
 
 def grown(extent: Extent, trial: Trial, grid: CellGrid) -> Extent:
     """The box with more cells on the sides that strain or contact reaches, as far as the grid goes."""
-    strained = _strained(trial)
+    strained = trial.increment.cells
     on_surface: Mask = strained.any(axis=0) | (trial.pressure > 0)
     window, layers = extent.window, extent.layers
     in_x = bool(on_surface[:2].any()), bool(on_surface[-2:].any())
@@ -155,7 +150,7 @@ def widened(first: int, count: int, limit: int, reached: tuple[bool, bool]) -> t
 
 def edge_reached(trial: Trial, grid: CellGrid, *, cut_beside: bool) -> Sides:
     """Sides at which plastic strain fills the outermost cells; a rough patch is cut beside anyway."""
-    strained = _strained(trial)
+    strained = trial.increment.cells
     columns: Mask = np.asarray(strained.any(axis=0))
     beside = at_edge(columns, grid.line)
     return Sides(bool(beside and not cut_beside), bool(strained[-1].any()))

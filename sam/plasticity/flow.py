@@ -45,8 +45,9 @@ from typing import ClassVar, Self
 import numpy as np
 
 from sam.arrays import Array, Mask
-from sam.contact.stress import yielding
+from sam.contact.operators import yielding
 from sam.plasticity.state import MaterialFields
+from sam.scene.section import stated
 from sam.scene.yield_curve import YieldCurve, plastic_work, step_energies
 
 ITERATIONS = 50
@@ -211,16 +212,11 @@ class BackStressFields:
     modulus: Array
     recovery: Array
 
-    @property
-    def count(self) -> int:
-        """How many there are."""
-        return len(self.modulus)
-
     def at(self, points: Mask) -> BackStressFields:
         """Those of some of the points, (N, n)."""
 
         def of(values: Array) -> Array:
-            return np.broadcast_to(values, (self.count, *points.shape))[:, points]
+            return np.broadcast_to(values, (len(values), *points.shape))[:, points]
 
         return BackStressFields(of(self.modulus), of(self.recovery))
 
@@ -253,7 +249,10 @@ def kinematic_multiplier(
     """(dp, (n,), and eta in Pa, (6, n)) of (d) for n cells that yield, as `plastic_multiplier`; trial:
     deviatoric; start, back: back-stresses at the beginning and their constants.
     """
-    turns = _Turns.of(trial, start)
+    xi = trial - start.sum
+    weighted = (1.5 * SHEAR)[:, None] * xi
+    cross = np.einsum("sn,ksn->kn", weighted, start.each)
+    turns = _Turns(xi, start, np.einsum("sn,sn->n", weighted, xi), cross)
     low, high = np.zeros(trial.shape[1]), (turns.square**0.5 - curve(np.zeros(trial.shape[1]))[0]) / m3
     gamma = np.clip(near, low, high)
     for _ in range(KINEMATIC_ITERATIONS):
@@ -310,14 +309,6 @@ class _Turns:
     square: Array
     cross: Array
 
-    @classmethod
-    def of(cls, trial: Array, start: BackStresses) -> Self:
-        """Of some cells."""
-        xi = trial - start.sum
-        weighted = (1.5 * SHEAR)[:, None] * xi
-        cross = np.einsum("sn,ksn->kn", weighted, start.each)
-        return cls(xi, start, np.einsum("sn,sn->n", weighted, xi), cross)
-
     def mises(self, lost: Array, recovery: Array) -> tuple[Array, Array, Array]:
         """J(eta) after 1 - b_k, its slope over dp, and the size that its rounding goes with."""
         with_lost = self.cross + np.einsum("jkn,kn->jn", self.start.mutual, lost)
@@ -337,16 +328,9 @@ class KinematicMaterial(Material):
     back: BackStressFields
     hardens_back: ClassVar[bool] = True
 
-    @classmethod
-    def of(cls, mu: float, curve: YieldCurve, factor: Array, back: tuple[Array, Array]) -> Self:
-        """The material with the moduli and recoveries `back`, see `BackStressFields`."""
-        return cls(mu, curve, factor, BackStressFields(*back))
-
     def back_stress(self, fields: MaterialFields) -> Array:
         """The sum of the back-stresses in Pa, (6, ...)."""
-        if fields.back is None:
-            raise ValueError("the fields have no back-stress")
-        return self.back.of_strains(fields.back).sum(axis=0)
+        return self.back.of_strains(stated(fields.back)).sum(axis=0)
 
     def at(self, cells: Mask) -> KinematicMaterial:
         """The material of some cells, (n_layers, nx, ny), in a row: for points (..., n)."""
@@ -356,17 +340,11 @@ class KinematicMaterial(Material):
 
     def virgin(self, shape: tuple[int, ...]) -> MaterialFields:
         """The fields of points that never yielded."""
-        return MaterialFields.zero(shape, self.back.count)
+        return MaterialFields.zero(shape, len(self.back.modulus))
 
     def flow(self, before: MaterialFields) -> Flow:
         """How it yields over a step that begins in a state."""
         return KinematicFlow(self, before)
-
-    def over_increment(self, peeq: Array, points: Mask) -> CurveOfIncrement:
-        """Yield stress and slope in Pa of some cells over the increment of their accumulated strain."""
-        factor = np.broadcast_to(self.factor, points.shape)[points]
-        before, curve = peeq[points], self.curve.at(points)
-        return lambda gamma: (factor * curve.stress(before + gamma), factor * curve.slope(before + gamma))
 
 
 @dataclass(frozen=True)
@@ -376,21 +354,14 @@ class KinematicFlow(Flow):
     material: KinematicMaterial
 
     @property
-    def back(self) -> BackStressFields:
-        """The constants of the back-stresses."""
-        return self.material.back
-
-    @property
     def start(self) -> Array:
         """The strains a_k of the back-stresses at the beginning, (N, 6, ...)."""
-        if self.before.back is None:
-            raise ValueError("the state has no back-stress")
-        return self.before.back
+        return stated(self.before.back)
 
     @cached_property
     def at_start(self) -> BackStresses:
         """The back-stresses at the beginning."""
-        return BackStresses.of(self.back.of_strains(self.start))
+        return BackStresses.of(self.material.back.of_strains(self.start))
 
     def returned(self, trial: Array, m: float, *, near: Array) -> Array:
         """As without back-stress, the return of the stress less what is left of the back-stresses."""
@@ -398,11 +369,13 @@ class KinematicFlow(Flow):
         increment = np.zeros_like(trial)
         if not flowing.any():
             return increment
+        factor = np.broadcast_to(self.material.factor, flowing.shape)[flowing]
+        before, curve = self.before.peeq[flowing], self.material.curve.at(flowing)
         gamma, eta = kinematic_multiplier(
             trial[:, flowing],
             self.at_start.at(flowing),
-            self.back.at(flowing),
-            self.material.over_increment(self.before.peeq, flowing),
+            self.material.back.at(flowing),
+            lambda dp: (factor * curve.stress(before + dp), factor * curve.slope(before + dp)),
             m3=3 * m,
             near=np.broadcast_to(near, flowing.shape)[flowing],
         )
@@ -411,15 +384,15 @@ class KinematicFlow(Flow):
 
     def effective(self, x: Array, s: Array) -> Array:
         """The deviatoric stress less the back-stresses at the end of an increment x."""
-        end = self.start + self.back.change(self.start, x, equivalent_strain(x))
-        return s - self.back.of_strains(end).sum(axis=0)
+        end = self.start + self.material.back.change(self.start, x, equivalent_strain(x))
+        return s - self.material.back.of_strains(end).sum(axis=0)
 
     def increment(self, x: Array, length: Array) -> MaterialFields:
         """Increment of all fields of the material by a plastic strain x of this accumulated length."""
-        return MaterialFields(strain=x, peeq=length, back=self.back.change(self.start, x, length))
+        return MaterialFields(strain=x, peeq=length, back=self.material.back.change(self.start, x, length))
 
     def dissipated(self, increment: MaterialFields) -> Array:
         """Energy that an increment dissipates in J/m^3, without what the back-stresses store."""
-        modulus, recovery = self.back.modulus, self.back.recovery
+        modulus, recovery = self.material.back.modulus, self.material.back.recovery
         back = step_energies(modulus, recovery, self.start, increment.strain, length=increment.peeq)
         return super().dissipated(increment) + back.dissipated

@@ -14,10 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from sam.contact.stress import von_mises
-from sam.elastic.history import UNLOADING
-from sam.elastic.problem import ElasticProblem
-from sam.elastic.stress import ElasticPeak
+from sam.arrays import Array
+from sam.contact.operators import von_mises
+from sam.elastic.problem import UNLOADING, ElasticPeak, ElasticProblem
 from sam.grid.cells import CellGrid, Sides, Window
 from sam.plasticity.box import edge_reached, first_extent, grown, holding
 from sam.plasticity.load_step import ITERATIONS, LONG_ITERATIONS, Problem
@@ -25,19 +24,14 @@ from sam.plasticity.measure import (
     contact_in_box,
     cycle_end,
     dissipated_by,
-    moved,
-    new_strain,
-    pass_end,
     penetrated,
     problem_of,
     snapshot,
-    start_of,
     with_last_period,
     with_loops,
     with_outside,
 )
-from sam.plasticity.model import Model
-from sam.plasticity.progress import Begun, CycleStart, Parts, Progressed, floor
+from sam.plasticity.model import Begun, Model, Parts, Progressed, floor
 from sam.plasticity.state import (
     CellFields,
     Change,
@@ -48,9 +42,10 @@ from sam.plasticity.state import (
     on_larger_box,
     surrounded,
 )
-from sam.results.history import History, Row, row_of
+from sam.results.history import History, row_of
 from sam.scene import Status
 from sam.scene.result import LAST, PEAK, UNLOADED, Progress, unfinished
+from sam.scene.section import stated
 from sam.schedule import Load, Target
 from sam.tribofilm.state import TribofilmState
 
@@ -70,15 +65,13 @@ def solve_plastic(
     """The load history of a body that yields, from its beginning or a record, and the last record;
     keep: called as keep(record, done, total); peak: of an elastic body, for the first box.
     """
-    model = Model(problem)
+    model = Model(problem.plan, problem.counters)
     if start is not None:  # the model and its counters as they were when the record was made
         record = start
         problem_of(model, record)
         vars(model.counters).update(vars(record.counters))
-    elif peak is not None:
-        record = begun(model, model.plan.schedule.targets, first_box(model, peak))
     else:
-        raise ValueError("either a record or the elastic peak is needed")
+        record = begun(model, model.plan.schedule.targets, first_box(model, stated(peak)))
     while not record.ended:
         before = len(record.history.rows), record.parts.count
         record = onward(model, record)
@@ -94,7 +87,8 @@ def solve_plastic(
 
 def begun(model: Model, targets: Sequence[Target], extent: Extent) -> Progressed:
     """The record before the first step, on a first box."""
-    film = None if model.plan.tribofilm is None else model.plan.tribofilm.fresh(model.nothing_strained())
+    law, unstrained = model.plan.tribofilm, np.zeros((4, *model.grid.shape))
+    film = None if law is None else law.fresh(unstrained)
     wear = None if model.plan.wear is None else model.plan.wear.fresh()
     state = model.problem(extent, film, wear).virgin()
     return Progressed(state, extent, model.grid.room, tuple(targets), replace(model.counters), film, wear)
@@ -122,8 +116,16 @@ def onward(model: Model, record: Progressed) -> Progressed:
         return replace(record, counters=replace(model.counters))
     record = replace(record, cuts=record.cuts or (target.load,))
     record, trial = attempt(model, record, record.cuts[0])
-    if trial is not None and not trial.converged:
-        record = _cut(model, record, trial)
+    if trial is not None and not trial.converged:  # half of the way comes first
+        record = replace(record, parts=record.parts.tried(trial))
+        if len(record.cuts) <= MOST_CUTS:
+            model.counters.step_cuts += 1
+            halfway = record.state.load.halfway_to(record.cuts[0])
+            record = replace(record, cuts=(halfway, *record.cuts))
+        elif record.longer or model.plan.paper:
+            record = _given_up(record, trial)
+        else:
+            record = replace(record, longer=True, cuts=record.cuts[-1:])
     elif trial is not None:
         record = replace(record, cuts=record.cuts[1:], parts=record.parts.with_(trial))
         record = record if record.cuts else _reached(model, record, target, trial)
@@ -134,7 +136,7 @@ def _cycle_begun(model: Model, record: Progressed) -> Progressed:
     """The record that counts a cycle and period from here, with a new tribofilm on the surface."""
     material, state, film = record.state.material, record.state, record.tribofilm
     if model.plan.schedule.cycles > 1:
-        record = replace(record, cycle_start=CycleStart(record.extent, material))
+        record = replace(record, cycle_start=Begun(record.extent, material))
         if model.plan.judging is not None and record.periods.begun is None:
             worn = None if record.wear is None else record.wear.depth
             period = Begun(record.extent, material, worn)
@@ -154,15 +156,21 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
     committed state until box and film stay; None and a record that has ended if the grid cannot
     hold it.
     """
-    before = film = _film_before(model, record, load)
-    guess, start = record.guess(load), start_of(model, record, load)
+    law, track, grid, guess = model.plan.tribofilm, model.plan.track, model.grid, record.guess(load)
+    start, before = _begun_at(model, record, load)
+    film = before
 
     def changed(trial: Trial) -> Problem | None:
         """The problem with the friction that a trial makes, None if the film stays as it is."""
         nonlocal film
-        tried, film = film, _film_after(model, record, trial, before=before, tried=film)
-        stays = tried is None or film is None or film.film.failed is tried.film.failed
-        return None if stays else model.problem(record.extent, film, record.wear)
+        if law is None or film is None or before is None:
+            return None
+        extent, pressure, tried = record.extent, np.zeros(grid.shape), film
+        pressure[extent.window.slices] = trial.pressure * model.unit
+        plastic = record.state.material.strain + trial.increment.strain
+        strain = model.surface_strain(extent, trial.stress, plastic)
+        film = law.tested(before, tried, strain, pressure=pressure, sign=trial.load.sign)
+        return None if film.film.failed is tried.film.failed else model.problem(extent, film, record.wear)
 
     while True:
         problem = replace(model.problem(record.extent, film, record.wear), longer=record.longer)
@@ -171,14 +179,14 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         )
         if not trial.converged:
             return record, trial
-        extent = grown(record.extent, trial, model.grid)
+        extent = grown(record.extent, trial, grid)
         if extent != record.extent:
             return attempt(model, _enlarged(model, record, extent), load)
-        place, cut = model.place(load), model.plan.places.anywhere
-        reached = edge_reached(trial, model.grid, cut_beside=cut)
+        place, rough = "" if track is None else track.place(load), model.plan.places.anywhere
+        reached = edge_reached(trial, grid, cut_beside=rough)
         if reached.beside or reached.below:
             return _ended(record, Status.PLASTIC_ZONE_AT_GRID_EDGE, place, reached), None
-        if model.leaves_grid(record.extent.window, trial.pressure):
+        if track is not None and not rough and track.at_edge(grid, trial.pressure, extent.window):
             return _ended(record, Status.CONTACT_AT_GRID_EDGE, place, Sides(beside=True)), None
         if changed(trial) is None:
             after, extent = _beside(model, committed(model, record, trial, film), trial)
@@ -189,30 +197,28 @@ def attempt(model: Model, record: Progressed, load: Load) -> tuple[Progressed, T
         del trial  # its fields are large
 
 
-def _film_before(model: Model, record: Progressed, load: Load) -> TribofilmState | None:
-    """The film at the beginning of a step."""
+def _begun_at(model: Model, record: Progressed, load: Load) -> tuple[Array | None, TribofilmState | None]:
+    """p_hat that a step starts from, of the cycle before or moved with the counter-body, None: that of the
+    state; and the film at its beginning.
+    """
     law, track, film = model.plan.tribofilm, model.plan.track, record.tribofilm
-    if law is None or film is None or track is None:
-        return film
-    return law.entered(film, track.clock(record.targets[0].cycle, load))
+    if track is None:
+        start = record.recalled.get(repr(load.level))
+        return start if start is not None and start.shape == record.extent.window.shape else None, film
+    if law is not None and film is not None:
+        film = law.entered(film, track.clock(record.targets[0].cycle, load))
+    return track.carried(model.grid, record.state.pressure, record.state.load, load), film
 
 
-def _film_after(
-    model: Model,
-    record: Progressed,
-    trial: Trial,
-    *,
-    before: TribofilmState | None,
-    tried: TribofilmState | None,
-) -> TribofilmState | None:
-    """The film at the end of a trial that was made with the friction of `tried`; before: the step."""
-    law, extent, pressure = model.plan.tribofilm, record.extent, np.zeros((model.grid.nx, model.grid.ny))
-    if law is None or tried is None or before is None:
-        return tried
-    pressure[extent.window.slices] = trial.pressure * model.unit
-    plastic = record.state.material.strain + trial.increment.strain
-    strain = model.surface_strain(extent, trial.stress, plastic)
-    return law.tested(before, tried, strain, pressure=pressure, sign=trial.load.sign)
+def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Extent]:
+    """The record after a step, and its box; below a rough patch the one that also holds the cells
+    beside it that the counter-body penetrates.
+    """
+    if not model.plan.places.anywhere or record.extent.window == model.grid.whole:
+        return record, record.extent
+    record = with_outside(model, record)
+    cells = penetrated(model, record, trial)
+    return record, holding(record.extent, cells, model.grid) if cells.any() else record.extent
 
 
 def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
@@ -229,17 +235,6 @@ def _enlarged(model: Model, record: Progressed, extent: Extent) -> Progressed:
         for load, pressure in record.recalled.items()
     }
     return replace(record, state=state, extent=extent, outside=None, change=change, recalled=recalled)
-
-
-def _beside(model: Model, record: Progressed, trial: Trial) -> tuple[Progressed, Extent]:
-    """The record after a step, and its box; below a rough patch the one that also holds the cells
-    beside it that the counter-body penetrates.
-    """
-    if not model.plan.places.anywhere or record.extent.window == model.grid.whole:
-        return record, record.extent
-    record = with_outside(model, record)
-    cells = penetrated(model, record, trial)
-    return record, holding(record.extent, cells, model.grid) if cells.any() else record.extent
 
 
 def committed(model: Model, record: Progressed, trial: Trial, film: TribofilmState | None) -> Progressed:
@@ -273,17 +268,6 @@ def _given_up(record: Progressed, trial: Trial) -> Progressed:
     return _ended(record, Status.STEP_CUT_LIMIT, ending, Sides())
 
 
-def _cut(model: Model, record: Progressed, trial: Trial) -> Progressed:
-    """After a failed attempt half of the way comes first; after MOST_CUTS the longer iteration or the end."""
-    record = replace(record, parts=record.parts.tried(trial))
-    if len(record.cuts) > MOST_CUTS:
-        if record.longer or model.plan.paper:
-            return _given_up(record, trial)
-        return replace(record, longer=True, cuts=record.cuts[-1:])
-    model.counters.step_cuts += 1
-    return replace(record, cuts=(record.state.load.halfway_to(record.cuts[0]), *record.cuts))
-
-
 def _unloaded_elastically(model: Model, record: Progressed, target: Target) -> Progressed:
     """Unloaded in one step if that strains nothing; else nothing but the steps of the scene is planned."""
     problem, peak = problem_of(model, record), model.plan.schedule.peak.found(record.state.load.force)
@@ -307,6 +291,10 @@ def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, 
     if record.longer and note != UNLOADING:
         note = _joined(note, LONGER)
     mu, contact = problem_of(model, record).coefficient, contact_in_box(model, record, trial)
+    track, window, moved = model.plan.track, record.extent.window, None
+    if track is not None:
+        pressure, traction = trial.pressure * model.unit, trial.load.sign * mu
+        moved = track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
     row = replace(
         row_of(model.grid, target, contact, coefficient=mu, whole=model.plan.slip.whole),
         iterations=parts.iterations,
@@ -314,7 +302,7 @@ def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, 
         note=note,
         peeq_max=float(record.state.material.peeq.max()),
         attempts=parts.attempts,
-        moved=None if model.plan.track is None else moved(model, record, model.plan.track, trial),
+        moved=moved,
     )
     history = replace(record.history, rows=(*record.history.rows, row))
     record = replace(record, targets=record.targets[1:], parts=Parts(), history=history)
@@ -340,14 +328,19 @@ def _reached(model: Model, record: Progressed, target: Target, trial: Trial, *, 
 
 def _cycle_ended(model: Model, record: Progressed, cycle: int, trial: Trial) -> tuple[Progressed, Trial]:
     """The record at the end of a cycle, after wear if the body is unloaded, and the trial that ends it."""
-    new = new_strain(record)  # before anything is removed
+    start = record.cycle_start  # None where there is one cycle
+    new = None if start is None else start.new_strain(record.state, record.extent)  # before removal
     if trial.load.force == 0 and record.wear is not None:
         record, trial = _worn(model, record, trial)
     record = with_outside(model, record)
-    history = record.history
-    history = replace(history, ends=(*history.ends, cycle_end(model, record, cycle, new)))
-    if model.plan.track is not None:
-        history = replace(history, passes=(*history.passes, pass_end(model, record, model.plan.track, cycle)))
+    history, extent, track = record.history, record.extent, model.plan.track
+    end = cycle_end(model, record, cycle, np.zeros(extent.shape) if new is None else new)
+    history = replace(history, ends=(*history.ends, end))
+    if track is not None:
+        uz, rows = stated(record.outside).displacement, history.rows
+        added = record.state.material.peeq if start is None else start.new_strain(record.state, extent)
+        last = track.pass_end(model.grid, cycle, uz=uz, added=added, window=extent.window, rows=rows)
+        history = replace(history, passes=(*history.passes, last))
     return replace(record, history=history, dissipated=0.0, left=(0.0, 0.0)), trial
 
 
@@ -389,9 +382,9 @@ def _joined(*notes: str) -> str:
 
 def on_larger_grid(record: Progressed, grid: CellGrid, larger: CellGrid) -> Progressed | None:
     """The same record in the middle of a larger grid of equal cells, or None if it cannot be."""
-    wider, faces = grid.shape != larger.shape, grid.layer_faces
+    wider, faces = grid.shape != larger.shape, stated(grid.faces)
     of_whole_grid = wider and (record.wear is not None or record.tribofilm is not None)
-    same_layers = np.array_equal(faces, larger.layer_faces[: len(faces)])
+    same_layers = np.array_equal(faces, stated(larger.faces)[: len(faces)])
     if record.history.snapshots or of_whole_grid or not same_layers:
         return None
     i, j = (larger.nx - grid.nx) // 2, (larger.ny - grid.ny) // 2
@@ -432,7 +425,13 @@ def finished(model: Model, record: Progressed) -> History:
     # of the stress in y = 0 outside the box, where no plastic strain was allowed
     excess = von_mises(first.in_plane) / plan.initial_yield[:, None] - 1
     excess[: record.extent.layers, window.i0 : window.i0 + window.nx] = 0.0
-    warnings = _lengthened(history.rows)
+    warnings: tuple[str, ...] = ()
+    if steps := [row for row in history.rows if LONGER in row.note]:
+        warnings += (
+            f"a load step did not converge however often it was halved; {len(steps)} of {len(history.rows)} "
+            f"load steps, from cycle {steps[0].cycle}, step {steps[0].step} on, were made by a {LONGER}, of "
+            f"up to {LONG_ITERATIONS} iterations in place of {ITERATIONS}",
+        )
     if plan.paper:
         warnings += (
             f'solver.method = "paper", stop = "{plan.solver.stop}": the last step leaves a yield excess of '
@@ -445,7 +444,7 @@ def finished(model: Model, record: Progressed) -> History:
         certificate={
             **residuals,
             "yield_excess_outside_box": float(max(excess.max(), 0.0)),
-            "plastic_tolerance": model.tolerance,
+            "plastic_tolerance": model.plan.solver.tolerance,
         },
         discretisation={
             "plastic_box_cells": [window.nx, window.ny],
@@ -456,17 +455,4 @@ def finished(model: Model, record: Progressed) -> History:
         warnings=warnings,
         unfinished=tuple((target.cycle, target.step, record.parts.attempts) for target in record.targets[:1]),
         floor=float(floor(model, record.extent).min()) if model.plan.judging is not None else 0.0,
-    )
-
-
-def _lengthened(rows: Sequence[Row]) -> tuple[str, ...]:
-    """That steps needed the longer iteration, and how many."""
-    steps = [row for row in rows if LONGER in row.note]
-    if not steps:
-        return ()
-    first = f"cycle {steps[0].cycle}, step {steps[0].step}"
-    words = f"{LONG_ITERATIONS} iterations in place of {ITERATIONS}"
-    return (
-        f"a load step did not converge however often it was halved; {len(steps)} of {len(rows)} load steps, "
-        f"from {first} on, were made by a {LONGER}, of up to {words}",
     )

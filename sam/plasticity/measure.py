@@ -21,21 +21,18 @@ from numpy.typing import NDArray
 from sam.arrays import ROUNDING, Array, Mask
 from sam.contact.convolution import FEW_ROWS, Convolution, Counters, row_sums
 from sam.contact.normal import Contact, Solved, Units, around, measured, no_contact
-from sam.contact.stress import von_mises
-from sam.elastic.stress import plane_stress, sliding_of
+from sam.contact.operators import von_mises
+from sam.elastic.problem import plane_stress, sliding_of
 from sam.grid.cells import Window
 from sam.kernels.eigenstrain import surface_displacement_coefficients
 from sam.kernels.layer_stress import residual_stress_coefficients
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags, parity
-from sam.moving import Track
 from sam.plasticity.box import ExpectedBox
 from sam.plasticity.load_step import ContactPressure, PressureSource, Problem
-from sam.plasticity.model import Model
-from sam.plasticity.progress import Outside, Progressed
+from sam.plasticity.model import Model, Outside, Progressed
 from sam.plasticity.spectra import spectra_of
 from sam.plasticity.state import Extent, Trial, filled, surrounded
-from sam.results.history import CycleEnd, LoopRow, Moved, PassEnd, counted
-from sam.results.snapshots import Box, Cut, Snapshot, row_of_largest
+from sam.results.history import Box, Cut, CycleEnd, LoopRow, Snapshot, counted, row_of_largest
 from sam.scene.result import BACK_STRESS, unfinished
 from sam.scene.section import stated
 from sam.scene.verdict import last_period, loop_places
@@ -50,7 +47,7 @@ def problem_of(model: Model, record: Progressed) -> Problem:
 def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact of a step in its box, with the residuals measured there."""
     load, p, source = trial.load, trial.pressure, problem_of(model, record).pressure
-    gap = model.gap(load, record.wear)[record.extent.window.slices] + trial.residual.displacement
+    gap = model.worn_gap(load, record.wear)[record.extent.window.slices] + trial.residual.displacement
     if load.force == 0:
         return no_contact(gap, load.given)  # the row of a step asks for no displacement
     u = source.contact.displacement(p, load.sign) if isinstance(source, ContactPressure) else np.zeros_like(p)
@@ -59,12 +56,11 @@ def contact_in_box(model: Model, record: Progressed, trial: Trial) -> Contact:
 
 def contact_on_grid(model: Model, record: Progressed, trial: Trial) -> Contact:
     """The contact on the full grid, found once more where single precision left it too far."""
-    window, load, moved = record.extent.window, trial.load, known_outside(record).displacement
-    gap, source = model.gap(load, record.wear) + moved, problem_of(model, record).pressure
+    window, load, moved = record.extent.window, trial.load, stated(record.outside).displacement
+    gap, source = model.worn_gap(load, record.wear) + moved, problem_of(model, record).pressure
     if load.force == 0:
-        return model.elastic.untouched(load, gap)
-
-    surface = model.surface
+        return model.untouched(load, gap)
+    surface = stated(model.built.surface)
 
     def of(pressure: Array) -> Contact:
         p = np.zeros(surface.shape)
@@ -97,7 +93,7 @@ def _contact(model: Model, source: PressureSource, load: Load, gap: Array, *, p:
     if not isinstance(source, ContactPressure):
         return stated(model.plan.given).contact(grid, load, p * model.unit, u * grid.hx)
     units, fields = Units(grid.hx, grid.hy, 2 * model.unit), Solved(p, u, around(p > 0))
-    contact = measured(model.surface, gap, fields, units, given=load.given, tolerance=tolerance)
+    contact = measured(stated(model.built.surface), gap, fields, units, given=load.given, tolerance=tolerance)
     if contact.converged:
         return contact
     words = unfinished("the contact iteration of a load step", source.contact.residuals, tolerance)
@@ -115,20 +111,13 @@ def with_outside(model: Model, record: Progressed, *, stress: bool = False) -> P
     return record if known is record.outside else replace(record, outside=known)
 
 
-def known_outside(record: Progressed) -> Outside:
-    """The fields outside of the box; ValueError for a record without them, see `with_outside`."""
-    if record.outside is None:
-        raise ValueError("the record has no fields outside of its box")
-    return record.outside
-
-
 def _residual_stress(model: Model, record: Progressed) -> Array:
     """Stress of plastic strain in the rows that touch y = 0; zero where the box covers them."""
     grid, window, rows = model.grid, record.extent.window, model.grid.axis_rows
     across = window.j0 <= rows.j0 and rows.j0 + rows.ny <= window.j0 + window.ny
     covered = record.extent.layers if across and window.nx == grid.nx else 0
     exchange = problem_of(model, record).operator.exchange
-    expected = ExpectedBox(*window.shape, record.extent.layers, model.tolerance, exchange)
+    expected = ExpectedBox(*window.shape, record.extent.layers, model.plan.solver.tolerance, exchange)
     large = (expected.large and model.asked_operator != "dense") or model.plan.period is not None
     if large and covered < len(grid.depths):
         return _swept_stress(model, record)
@@ -143,6 +132,7 @@ def _swept_stress(model: Model, record: Progressed) -> Array:
     the largest two cells beside strained ones, .001 % beside a patch with zones of tens of cells.
     """
     grid, rows, box = model.grid, model.grid.axis_rows, record.extent.window
+    faces = stated(grid.faces)
     j0, j1 = min(box.j0, rows.j0 - 1), max(box.j0 + box.ny, rows.j0 + rows.ny + 1)
     extent = Extent(Window(0, j0, grid.nx, j1 - j0), len(grid.depths))
     operator = model.operator(extent, once=Counters())
@@ -152,7 +142,7 @@ def _swept_stress(model: Model, record: Progressed) -> Array:
     first = rows.j0 - 1 - j0
     means = operator.whole(operator.stress(None, response))[..., first : first + rows.ny + 2].astype(float)
     centres = means[..., 1:-1].copy()
-    for axis, edges in enumerate((grid.layer_faces, np.arange(grid.nx + 1.0), np.arange(rows.ny + 3.0)), 1):
+    for axis, edges in enumerate((faces, np.arange(grid.nx + 1.0), np.arange(rows.ny + 3.0)), 1):
         bend = np.moveaxis(_bend(np.moveaxis(means, axis, 0), edges), 0, axis)
         ends = [(int(k == axis < 3),) * 2 for k in range(4)]
         centres -= np.pad(bend, ends, mode="edge")[..., slice(1, -1) if axis < 3 else slice(None)] / 24
@@ -188,34 +178,12 @@ def _moved_grid(model: Model, record: Progressed) -> Array:
     return np.asarray(model.grid.hx * built.onto_grid[1].summed(source.strain)[0])
 
 
-def start_of(model: Model, record: Progressed, load: Load) -> Array | None:
-    """p_hat to start from: of the cycle before, or moved with the counter-body; None: the state's."""
-    if model.plan.track is None:
-        return record.recall(load)
-    return model.plan.track.carried(model.grid, record.state.pressure, record.state.load, load)
-
-
-def moved(model: Model, record: Progressed, track: Track, trial: Trial) -> Moved:
-    """What a step says of the motion of the counter-body."""
-    pressure, window = trial.pressure * model.unit, record.extent.window
-    traction = trial.load.sign * problem_of(model, record).coefficient
-    return track.moved(model.grid, trial.load, pressure, window=window, traction=traction)
-
-
-def pass_end(model: Model, record: Progressed, track: Track, cycle: int) -> PassEnd:
-    """What a pass over a path leaves; the record has the fields outside of the box."""
-    start, uz = record.cycle_start, known_outside(record).displacement
-    added = record.state.material.peeq if start is None else start.new_strain(record.state, record.extent)
-    rows = record.history.rows
-    return track.pass_end(model.grid, cycle, uz=uz, added=added, window=record.extent.window, rows=rows)
-
-
 def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snapshot:
     """A state in y = 0: of the cells in the box, and at the cell centres outside of it."""
-    outside, material, rows = known_outside(record), record.state.material, model.grid.axis_rows
+    outside, material, rows = stated(record.outside), record.state.material, model.grid.axis_rows
     grid, extent, window, layers = model.grid, record.extent, record.extent.window, record.extent.layers
     contact, mu = contact_on_grid(model, record, trial), model.coefficient(record.tribofilm)
-    loaded = model.elastic.state(trial.load, contact, mu)
+    loaded = model.state(trial.load, contact, mu)
     stress = plane_stress(loaded)
     if outside.stress is not None:
         stress = stress + outside.stress
@@ -223,7 +191,7 @@ def snapshot(model: Model, record: Progressed, name: str, trial: Trial) -> Snaps
     strain = _filled(model, extent, np.zeros_like(stress), material.strain)
     sliding = sliding_of(loaded)
     if sliding is not None:
-        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(grid.layer_faces))
+        sliding = sliding.strained(_moved(model, record, 1, rows), strain, np.diff(stated(grid.faces)))
     back = model.material(extent).at(material.cells).back_stress(material.points)
     repeated = {} if back is None else {BACK_STRESS: filled(back.mean(axis=1), material.cells)}
 
@@ -312,13 +280,6 @@ def _filled(model: Model, extent: Extent, plane: Array, field: Array) -> Array:
     return plane
 
 
-def new_strain(record: Progressed) -> Array:
-    """What the cycle has strained so far, (n_layers, nx, ny); zero where there is one cycle."""
-    if record.cycle_start is None:
-        return np.zeros(record.extent.shape)
-    return record.cycle_start.new_strain(record.state, record.extent)
-
-
 def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
     """The energy in J that a step from a record dissipates; 0 where nobody asks for it."""
     if not (model.plan.dissipates and trial.plastic):
@@ -333,7 +294,7 @@ def dissipated_by(model: Model, record: Progressed, trial: Trial) -> float:
 
 def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> CycleEnd:
     """The surface at the end of a cycle, and how much is worn so far."""
-    moved, rough, wear = known_outside(record).displacement, model.plan.rough, record.wear
+    moved, rough, wear = stated(record.outside).displacement, model.plan.rough, record.wear
     lowered = moved if wear is None else moved + wear.depth
     end = CycleEnd(
         cycle,
@@ -352,8 +313,14 @@ def cycle_end(model: Model, record: Progressed, cycle: int, new: Array) -> Cycle
     end = replace(end, moved=moved, worn=wear.depth, margin=margin)
     if len(wear.volumes) != cycle:
         return end
-    worn, raw, roofed, roof, filled = wear.of_last_cycle
-    return replace(end, wear_of_cycle=worn, raw=raw, roofed=roofed, roof=roof, filled=filled)
+    return replace(
+        end,
+        wear_of_cycle=wear.volumes[-1],
+        raw=wear.raw_volumes[-1],
+        roofed=wear.roofed_volumes[-1],
+        roof=wear.roof_volumes[-1],
+        filled=wear.filled_volumes[-1],
+    )
 
 
 def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -> Progressed:
@@ -363,31 +330,25 @@ def with_loops(model: Model, record: Progressed, target: Target, trial: Trial) -
     period, ends = last_period(model.plan.judging, model.plan.schedule.cycles), record.periods.begun is None
     if not (target.cycle in period or (target.cycle == period.start - 1 and ends)):
         return record
-    rows = record.history.loops
-    places = [row.place for row in rows[:3]] if rows else _chosen(record)
-    window = record.extent.window
-    at = [(layer, i - window.i0, j - window.j0) for layer, i, j in places]
-    material = record.state.material
+    rows, window, material = record.history.loops, record.extent.window, record.state.material
+    at = [(layer, i - window.i0, j - window.j0) for layer, i, j in (row.place for row in rows[:3])]
+    if not rows:
+        added = record.periods.last[-1].on(record.extent, None).accumulated
+        places = loop_places(added, material.peeq.ravel())
+        where = (np.unravel_index(place, record.extent.shape) for place in places)
+        at = [(int(layer), int(i), int(j)) for layer, i, j in where]
     cells = [
         LoopRow(
-            place,
+            (cell[0], cell[1] + window.i0, cell[2] + window.j0),
             target.cycle,
             target.step,
             float(material.peeq[cell]),
             tuple(trial.stress[(slice(None), *cell)].tolist()),
             tuple(material.strain[(slice(None), *cell)].tolist()),
         )
-        for place, cell in zip(places, at, strict=True)
+        for cell in at
     ]
     return replace(record, history=replace(record.history, loops=(*rows, *cells)))
-
-
-def _chosen(record: Progressed) -> list[tuple[int, int, int]]:
-    """Layer and cells of the grid of the cells, see `loop_places`."""
-    extent, window, last = record.extent, record.extent.window, record.periods.last[-1]
-    places = loop_places(last.on(extent, None).accumulated, record.state.material.peeq.ravel())
-    where = [np.unravel_index(place, extent.shape) for place in places]
-    return [(int(layer), int(i) + window.i0, int(j) + window.j0) for layer, i, j in where]
 
 
 ODD = np.array([ODD_X, ODD_Y])

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.arrays import Array
-from sam.contact.stress import von_mises, yielding
+from sam.contact.operators import von_mises, yielding
 from sam.plasticity.flow import contraction, deviator, equivalent_strain
 from sam.plasticity.load_step import CONTACT_SHARE, Problem
 from sam.plasticity.points import POINTS

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array, Mask
 from sam.contact.convolution import Transforms
-from sam.contact.stress import yielding
+from sam.contact.operators import yielding
 from sam.kernels.patches import ODD_X, ODD_Y
 from sam.plasticity.flow import Flow, Material, contraction, deviator, equivalent_strain, mises
 from sam.plasticity.spectra import EVEN

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from sam.arrays import Array
 from sam.contact.convolution import Counters, Transforms, real_spectrum
-from sam.contact.periodic import PeriodicHalfSpaces
+from sam.contact.operators import PeriodicHalfSpaces
 from sam.kernels.eigenstrain import EXCHANGED, surface_displacement_coefficients
 from sam.kernels.layer_stress import LayerStress, functions_of
 from sam.kernels.patches import ODD_X, ODD_Y, STRESS, Cuboids, Lags
@@ -38,8 +38,7 @@ from sam.plasticity.cell_means import (
     gauss_depths,
     mean_stress_of_load,
 )
-from sam.plasticity.images import Images, PeriodImages
-from sam.plasticity.swept import GAUSS, SweptLayers
+from sam.plasticity.swept import GAUSS, Images, PeriodImages, SweptLayers
 
 Reals = NDArray[Any]
 """Real numbers in the precision of the operator, single or double."""
@@ -124,7 +123,7 @@ class BoxSpectra:
 
     def full_space(self, observed: int, sources: slice) -> Array:
         """See `sam.plasticity.swept.Exact`."""
-        found = self._layer_stress(slice(observed, observed + 1), sources).of_full_space(0)
+        found = self._layer_stress(slice(observed, observed + 1), sources).of_part(0, image=False)
         parts = [self._periodic(part, False, observed, j) for j, part in enumerate(found, sources.start)]
         return np.stack(parts, axis=2)
 
@@ -133,7 +132,7 @@ class BoxSpectra:
         some = slice(0, layers)
         stress, out = self._layer_stress(some, some), np.empty((6, layers, 6, layers, self.waves))
         for i in range(layers):
-            for j, part in enumerate(stress.of_image(i)):
+            for j, part in enumerate(stress.of_part(i, image=True)):
                 out[:, i, :, j] = self._periodic(part, True, i, j)
         return out
 

@@ -9,13 +9,9 @@ load cattrs.
 from importlib import import_module
 from typing import Any
 
-from sam.scene.body import LAWS, Body, Coating, Hardening, Plasticity
-from sam.scene.counterbody import SHAPES, CounterBody
-from sam.scene.friction import Friction
+from sam.scene.body import LAWS, SHAPES, Body, Coating, CounterBody, Friction, Hardening, Plasticity
 from sam.scene.inputs import InputError, Inputs, below, open_file, read_apart, read_limited
-from sam.scene.load import check_kind, load_scene, parse_scene, parse_toml, read_scene, scene_of
-from sam.scene.loading import Loading, Pass, Path, Strokes
-from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
+from sam.scene.numerics import Compare, Fem, Grid, Loading, Pass, Path, Solver, Strokes, Wear
 from sam.scene.remedies import either, finer_cells, finer_mesh
 from sam.scene.result import (
     COLUMNS,
@@ -38,11 +34,31 @@ from sam.scene.result import (
     Status,
     Table,
 )
-from sam.scene.schema import Scene, resolved, solved_part
-from sam.scene.section import Conflict, Problem, SceneError, Section, printable, problems, spelling
+from sam.scene.schema import (
+    Scene,
+    check_kind,
+    load_scene,
+    parse_scene,
+    parse_toml,
+    read_scene,
+    resolved,
+    scene_of,
+    solved_part,
+)
+from sam.scene.section import (
+    Conflict,
+    Problem,
+    SceneError,
+    Section,
+    printable,
+    problems,
+    spelling,
+    tables_of,
+    unit_of_key,
+    with_units,
+)
 from sam.scene.surface import CounterSurface, FrictionMap, HeightMap, Surface
 from sam.scene.units import Number, in_unit, number_and_unit
-from sam.scene.writing import tables_of, unit_of_key, with_units
 from sam.scene.yield_curve import YieldCurve, plastic_work, step_energies, stored_energy
 
 __all__ = [

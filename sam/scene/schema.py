@@ -8,27 +8,42 @@ flat_radius, or a plane (flat), gap0 = 0. A rough body has heights, positive out
 counter-body: gap0 less the heights of both, and shifted to touch first at 0, anew with each stretch of a
 renewed counter-surface. A cylinder has gap0 = x^2/(2 radius), its axis along y. A value out of range, an
 unknown key or keys that contradict each other raise pydantic.ValidationError, all at once.
+
+Reading of scene files: a file becomes a Scene, or every error of it is reported at once.
 """
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Iterator, Mapping
 from math import ceil, inf, isclose, pi, sqrt
+from pathlib import Path
 from typing import Any, Required, TypedDict, Unpack
 
 from pydantic import BaseModel, ValidationError
 
 from sam.arrays import ROUNDING
-from sam.scene.body import Body
-from sam.scene.counterbody import CounterBody
-from sam.scene.friction import Friction
-from sam.scene.loading import MISFIT_SPHERE, TO_AND_FRO, Loading, Strokes
-from sam.scene.numerics import Compare, Fem, Grid, Solver, Wear
-from sam.scene.section import NOT_YET, Conflict, Given, SceneError, Section, broken, problems, stated
+from sam.scene.body import Body, CounterBody, Friction
+from sam.scene.inputs import InputError, Inputs, read_limited
+from sam.scene.numerics import MISFIT_SPHERE, TO_AND_FRO, Compare, Fem, Grid, Loading, Solver, Strokes, Wear
+from sam.scene.section import (
+    NOT_YET,
+    Conflict,
+    Given,
+    Problem,
+    SceneError,
+    Section,
+    broken,
+    nameless,
+    problems,
+    stated,
+    tables_of,
+    toml,
+)
 from sam.scene.surface import CounterSurface, FrictionMap, Strip, Surface, leading, patch_of
 from sam.scene.surface.section import GENERATED, grid_excesses, patch_excesses
-from sam.scene.units import COUNT, STRAIN
-from sam.scene.writing import nameless, tables_of, toml
+from sam.scene.units import COUNT, IN_FILE, STRAIN
 
 Keys = Mapping[str, object]
 
@@ -470,3 +485,94 @@ def resolved(scene: Scene) -> dict[str, Any]:
 def solved_part(content: Mapping[str, Any]) -> dict[str, Any]:
     """What a result depends on, of a resolved scene: all but [compare]."""
     return {name: table for name, table in content.items() if name != "compare"}
+
+
+_BETWEEN = re.compile(rb"([\n,={}\[\]#])")
+_BARE = re.compile(rb"^[^\n#\"']*[=\[,]\s*+[+-]?[0-9][0-9.eE_+-]*+[ \t]*+[A-Za-z]", re.MULTILINE)
+"""A number with a unit and without quotes."""
+_MOST_DOTS = 32  # in one key
+
+KINDS = {
+    "rows": ("verification case", "verify"),
+    "cases": ("verification case", "verify"),
+    "vary": ("study", "sweep"),
+    "unknown": ("fit", "fit"),
+    "body": ("scene", "solve"),
+}
+"""Table that a file has -> its kind, and the command that takes it."""
+
+
+def load_scene(path: str | Path) -> Scene:
+    """The scene in a TOML file.
+
+    Parameters
+    ----------
+    path
+        Of the file; files that it names are read from its folder.
+
+    Raises
+    ------
+    SceneError
+        With every problem of the file: key, value and what is allowed.
+    """
+    return read_scene(path)[0]
+
+
+def read_scene(path: str | Path) -> tuple[Scene, dict[str, bytes]]:
+    """As `load_scene`, with the content of every file that was read, the scene file among them, by name."""
+    path = Path(path)
+    try:
+        content = read_limited(path)
+    except InputError as error:
+        raise _whole_file(str(error), path) from None
+    inputs = Inputs(path.parent)
+    scene = parse_scene(content, str(path), inputs)
+    return scene, {path.name: content, **inputs.contents}
+
+
+def parse_scene(content: bytes, source: str, inputs: Inputs | None = None) -> Scene:
+    """The scene in bytes of TOML, whose name is `source`; inputs: reads the files that it names."""
+    table = parse_toml(content, source)
+    if not table:
+        raise _whole_file("empty: a scene needs the tables [body], [counterbody] and [loading]", source)
+    check_kind(table, "scene", source)
+    return scene_of(table, source, inputs)
+
+
+def parse_toml(content: bytes, source: str) -> dict[str, Any]:
+    """The tables in bytes of TOML; SceneError for others, or tables in too many."""
+    pieces = _BETWEEN.split(content)  # every second one is a separator
+    if any(
+        name.count(b".") > _MOST_DOTS and end in b"=]"
+        for name, end in zip(pieces[::2], pieces[1::2], strict=False)
+    ):
+        raise _whole_file("nested too deeply", source)  # tomllib takes time with the square of the depth
+    try:
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise _whole_file(f"not UTF-8: byte {content[error.start]:#04x} in line {line}", source) from None
+    except RecursionError:
+        raise _whole_file("nested too deeply", source) from None
+    except ValueError as error:  # TOMLDecodeError, and a number of thousands of digits
+        quotes = ": numbers with units stand in quotes" if _BARE.search(content) else ""
+        raise _whole_file(f"not TOML: {error}{quotes}", source) from None
+
+
+def check_kind(table: Mapping[str, Any], own: str, source: str) -> None:
+    """Raise SceneError for a file of another kind than its own, with the command that takes it."""
+    kind, command = next((kind for key, kind in KINDS.items() if key in table), (own, ""))
+    if kind != own and not any(key in table for key, (other, _) in KINDS.items() if other == own):
+        raise _whole_file(f"this is a {kind}: samfem {command} {source}", source)
+
+
+def scene_of(table: Mapping[str, Any], source: str, inputs: Inputs | None = None) -> Scene:
+    """The scene, with all defaults, in the tables that `parse_toml` returns; the rest as of `parse_scene`."""
+    try:
+        return Scene.model_validate(table, context={**IN_FILE, "inputs": inputs})
+    except ValidationError as error:
+        raise SceneError(problems(error), source) from None
+
+
+def _whole_file(message: str, source: str | Path) -> SceneError:
+    return SceneError([Problem("", "", message)], str(source))

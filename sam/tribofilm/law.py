@@ -37,7 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sam.arrays import Array, Mask
-from sam.scene.friction import Friction
+from sam.scene.body import Friction
 from sam.scene.section import stated
 
 
@@ -57,20 +57,6 @@ class FilmState:
     def thinning(self) -> Array:
         """Share of the thickness that plastic flow took, (nx, ny); negative where it is thicker."""
         return 0.0 - self.plastic[2]
-
-
-@dataclass(frozen=True)
-class Material:
-    """An elastic, perfectly plastic film; young and yield_stress in Pa."""
-
-    young: float
-    poisson: float
-    yield_stress: float
-
-    @property
-    def twice_shear(self) -> float:
-        """2 G = E/(1 + nu) in Pa."""
-        return self.young / (1.0 + self.poisson)
 
 
 @dataclass(frozen=True)
@@ -95,25 +81,25 @@ def bearable_radius(shear: Array, yield_stress: float) -> Array:
     return np.sqrt(np.maximum(yield_stress**2 - 3.0 * shear**2, 0.0))
 
 
-def increment(loads: Loads, material: Material) -> Array:
+def increment(loads: Loads, law: FilmLaw) -> Array:
     """Increment of the plastic strain, (6, n), of cells that bear their traction."""
-    radius = bearable_radius(loads.shear, material.yield_stress)
-    return flow(trial_stress(loads, material), loads.shear, radius, material)
+    radius = bearable_radius(loads.shear, law.yield_stress)
+    return flow(trial_stress(loads, law), loads.shear, radius, law)
 
 
-def trial_stress(loads: Loads, material: Material) -> Array:
+def trial_stress(loads: Loads, law: FilmLaw) -> Array:
     """(S, D, T) of (a) in Pa, (3, n), without further flow: paper Eq. 12 by Hooke's law, s_zz by Eq. 13."""
-    young, poisson, normal = material.young, material.poisson, -loads.pressure  # paper Eq. 13: s_zz = -P
+    young, poisson, normal = law.young, law.poisson, -loads.pressure  # paper Eq. 13: s_zz = -P
     xx, yy, xy = loads.strain - loads.plastic[[0, 1, 5]]
     # s_xx + s_yy of paper Eq. 12, with E/(1 + nu) where E/(2 (1 + nu)) is printed, and s_zz = normal
     in_plane = (young * (xx + yy) + 2.0 * poisson * normal) / (1.0 - poisson)
-    twice_shear = material.twice_shear
+    twice_shear = law.twice_shear
     return np.stack([in_plane - 2.0 * normal, twice_shear * (xx - yy), twice_shear * xy])
 
 
-def flow(trial: Array, shear: Array, radius: Array, material: Material) -> Array:
+def flow(trial: Array, shear: Array, radius: Array, law: FilmLaw) -> Array:
     """Increment of plastic strain (6, n) that brings trial stresses (3, n) to radius k > 0, (n,), or 0."""
-    a, b = material.young / (3.0 * (1.0 - material.poisson)), material.twice_shear
+    a, b = law.young / (3.0 * (1.0 - law.poisson)), law.twice_shear
     along, across = trial[0] ** 2 / 4.0, 0.75 * trial[1] ** 2 + 3.0 * trial[2] ** 2
     factor = multiplier(along, across, radius, (a, b))
     S, D, T = trial[0] / (1.0 + a * factor), *(trial[1:] / (1.0 + b * factor))
@@ -139,14 +125,14 @@ def multiplier(along: Array, across: Array, radius: Array, moduli: tuple[float, 
 SHEAR = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # each shear component stands for two entries of the tensor
 
 
-def printed_increment(loads: Loads, material: Material) -> Array:
+def printed_increment(loads: Loads, law: FilmLaw) -> Array:
     """Increment of the plastic strain, (6, n), of cells under the printed stress."""
-    return radial_flow(printed_stress(loads, material), loads.plastic, material)
+    return radial_flow(printed_stress(loads, law), loads.plastic, law)
 
 
-def printed_stress(loads: Loads, material: Material) -> Array:
+def printed_stress(loads: Loads, law: FilmLaw) -> Array:
     """Stress (6, n) in Pa by Eqs. 12-14 as printed, order 11 22 33 23 13 12."""
-    young, poisson = material.young, material.poisson
+    young, poisson = law.young, law.poisson
     half, lame = young / (2.0 * (1.0 + poisson)), young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     normals = np.stack([loads.strain[0], loads.strain[1], np.asarray(loads.bulk_normal)])
     stress = np.zeros((6, *loads.pressure.shape))
@@ -156,9 +142,9 @@ def printed_stress(loads: Loads, material: Material) -> Array:
     return stress
 
 
-def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
+def radial_flow(stress: Array, plastic: Array, law: FilmLaw) -> Array:
     """Increment of the plastic strain (6, ...) after `plastic`, at given total strains; 0 below yield."""
-    twice_shear, yield_stress = material.twice_shear, material.yield_stress
+    twice_shear, yield_stress = law.twice_shear, law.yield_stress
     deviator = stress - twice_shear * plastic
     deviator[:3] -= deviator[:3].mean(axis=0)
     q = np.sqrt(1.5 * np.einsum("i,i...,i...->...", SHEAR, deviator, deviator))
@@ -167,8 +153,8 @@ def radial_flow(stress: Array, plastic: Array, material: Material) -> Array:
 
 @dataclass(frozen=True)
 class FilmLaw:
-    """The law of a tribofilm, in Pa. limit: largest loss of thickness in a cycle, as a strain
-    (paper Eq. 17); printed: Eq. 12 and 13 as printed.
+    """The law of an elastic, perfectly plastic tribofilm, in Pa. limit: largest loss of thickness in
+    a cycle, as a strain (paper Eq. 17); printed: Eq. 12 and 13 as printed.
     """
 
     young: float
@@ -195,9 +181,9 @@ class FilmLaw:
         )
 
     @property
-    def material(self) -> Material:
-        """What the film is made of."""
-        return Material(self.young, self.poisson, self.yield_stress)
+    def twice_shear(self) -> float:
+        """2 G = E/(1 + nu) in Pa."""
+        return self.young / (1.0 + self.poisson)
 
     def step(
         self,
@@ -227,7 +213,7 @@ class FilmLaw:
         )
         flow_of = printed_increment if self.printed else increment
         plastic = state.plastic.copy()
-        plastic[:, alive] += flow_of(loads, self.material)
+        plastic[:, alive] += flow_of(loads, self)
         lost = np.abs(plastic[2]) if self.printed else -plastic[2]
         beyond = ~bears | (
             lost > (self.limit if limit is None else limit)
@@ -237,11 +223,6 @@ class FilmLaw:
     def coefficient(self, state: FilmState) -> Array:
         """Local coefficient of friction, (nx, ny)."""
         return np.where(state.failed, self.high, self.low)
-
-    @property
-    def bearable_pressure(self) -> float:
-        """Pressure in Pa from which there is no equilibrium at the low coefficient; infinite at zero."""
-        return float(self.yield_stress / (np.sqrt(3.0) * self.low)) if self.low > 0 else np.inf
 
     def _checked(
         self, state: FilmState, strain: ArrayLike, pressure: ArrayLike, bulk_normal: ArrayLike | None

@@ -66,21 +66,29 @@ class TribofilmState:
 
 
 @dataclass(frozen=True)
-class VisitLaw:
-    """How a film begins each visit; rate: of thinning in 1/sqrt(m) or None; period: way in m."""
+class FilmOnCells:
+    """The law of a tribofilm on `shape` (nx, ny) cells; below a counter-body that moves, rate: with which it
+    may thin in a visit in 1/sqrt(m), None: by the limit; period: its way in m from pass to pass.
+    """
 
-    rate: float | None
-    period: float
+    law: FilmLaw
+    shape: tuple[int, int]
+    rate: float | None = None
+    period: float | None = None
 
-    def never(self, strain: Array, limit: float) -> Visits:
-        """Before the first contact; strain: of the surface, (4, nx, ny)."""
-        shape = strain.shape[1:]
-        nothing = np.zeros(shape, dtype=bool)
-        left, limits = np.full(shape, np.nan), np.full(shape, limit)
-        return Visits(0.0, nothing, left, limits, strain, np.zeros(BINS))
+    def fresh(self, strain: Array) -> TribofilmState:
+        """A whole film on a surface with these total strains xx, yy, xy, zz, (4, nx, ny)."""
+        visits = None
+        if self.period is not None:  # before the first contact
+            left, limits = np.full(self.shape, np.nan), np.full(self.shape, self.law.limit)
+            visits = Visits(0.0, np.zeros(self.shape, dtype=bool), left, limits, strain, np.zeros(BINS))
+        return TribofilmState(FilmState.fresh(self.shape), strain, visits)
 
-    def entered(self, state: TribofilmState, visits: Visits, clock: float) -> TribofilmState:
-        """The film at the beginning of a step to a clock in m."""
+    def entered(self, state: TribofilmState, clock: float) -> TribofilmState:
+        """The film at the beginning of a step; clock: way of a counter-body that moves at its end, in m."""
+        visits = state.visits
+        if visits is None or self.period is None:
+            return state
         new = ~visits.inside & ~(clock <= visits.left + ROUNDING * self.period)
         limit, failed = visits.limit, state.film.failed
         if self.rate is not None:
@@ -91,36 +99,6 @@ class VisitLaw:
         film = FilmState(np.where(new, 0.0, state.film.plastic), failed)
         reference = np.where(new, visits.strain, state.reference)
         return TribofilmState(film, reference, replace(visits, clock=clock, limit=limit))
-
-    def after(self, visits: Visits, pressure: Array, strain: Array) -> Visits:
-        """The visits at the end of a step with this pressure, (nx, ny)."""
-        inside, bins = pressure > 0, bins_of_visits(self.period)
-        came = inside & ~visits.inside & (visits.clock > visits.left + ROUNDING * self.period)
-        ways = (visits.clock - visits.left)[came]
-        which = np.minimum(np.searchsorted(bins, ways * (1 - ROUNDING)), BINS - 1)
-        counts = visits.counts + np.bincount(which, minlength=BINS)
-        left = np.where(visits.inside & ~inside, visits.clock, visits.left)
-        return replace(visits, inside=inside, left=left, strain=strain, counts=counts)
-
-
-@dataclass(frozen=True)
-class FilmOnCells:
-    """The law of a tribofilm on `shape` (nx, ny) cells; visited: below a counter-body that moves."""
-
-    law: FilmLaw
-    shape: tuple[int, int]
-    visited: VisitLaw | None = None
-
-    def fresh(self, strain: Array) -> TribofilmState:
-        """A whole film on a surface with these total strains xx, yy, xy, zz, (4, nx, ny)."""
-        visits = None if self.visited is None else self.visited.never(strain, self.law.limit)
-        return TribofilmState(FilmState.fresh(self.shape), strain, visits)
-
-    def entered(self, state: TribofilmState, clock: float) -> TribofilmState:
-        """The film at the beginning of a step; clock: way of a counter-body that moves at its end, in m."""
-        if state.visits is None or self.visited is None:
-            return state
-        return self.visited.entered(state, state.visits, clock)
 
     def coefficient(self, state: TribofilmState) -> Array:
         """Coefficient of friction of each cell, (nx, ny)."""
@@ -139,6 +117,12 @@ class FilmOnCells:
         film = self.law.step(before, since[:3], pressure, sign=sign, bulk_normal=since[3], limit=limit)
         if not (film.failed & ~before.failed).any():
             film = replace(film, failed=before.failed)
-        if visits is not None and self.visited is not None:
-            visits = self.visited.after(visits, pressure, strain)
+        if visits is not None and self.period is not None:
+            inside, bins = pressure > 0, bins_of_visits(self.period)
+            came = inside & ~visits.inside & (visits.clock > visits.left + ROUNDING * self.period)
+            ways = (visits.clock - visits.left)[came]
+            which = np.minimum(np.searchsorted(bins, ways * (1 - ROUNDING)), BINS - 1)
+            counts = visits.counts + np.bincount(which, minlength=BINS)
+            left = np.where(visits.inside & ~inside, visits.clock, visits.left)
+            visits = replace(visits, inside=inside, left=left, strain=strain, counts=counts)
         return replace(committed, film=film, visits=visits)

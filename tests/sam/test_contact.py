@@ -20,8 +20,7 @@ from sam.contact.convolution import (
     row_sums,
 )
 from sam.contact.normal import Search, Solved, Units, around, fit_of, measured, no_contact, solve_contact
-from sam.contact.operators import SurfaceOperators
-from sam.contact.stress import stresses
+from sam.contact.operators import SurfaceOperators, stresses
 from sam.grid.cells import CellGrid, Window
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, parity, stress_coefficients
 from sam.plasticity.spectra import EXCHANGED, ODD_X, ODD_Y, BoxOperator

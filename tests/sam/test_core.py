@@ -30,21 +30,19 @@ from fem_reference.common.plasticity import J2, History
 from fem_reference.common.schedule import Load as FemLoad
 from fem_reference.spatial import recovery as spatial
 from sam.contact.convolution import Counters
-from sam.contact.operators import CoatedPair
-from sam.contact.stress import von_mises
+from sam.contact.operators import CoatedPair, von_mises
 from sam.elastic.problem import GivenHertz
 from sam.grid.cells import CellGrid
 from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import Cuboids, Lags, stress_coefficients
-from sam.layered.patches import normal_compliance
-from sam.layered.response import Layers
+from sam.layered.patches import Layers, normal_compliance
 from sam.plasticity.cell_means import NEAR, mean_stress_of_load
 from sam.plasticity.flow import Material
 from sam.plasticity.load_step import GivenPressure
 from sam.plasticity.paper import PaperProblem
 from sam.plasticity.state import MaterialFields, Trial
-from sam.results import quantities
-from sam.results.snapshots import Box, Sliding
+from sam.results import tables
+from sam.results.history import Box, Sliding
 from sam.scene.yield_curve import Kinks, Linear
 from sam.schedule import Load
 
@@ -369,7 +367,7 @@ def test_the_strain_that_a_twentieth_of_the_plastic_volume_exceeds():
     strain, volume, none = np.array([0.01, 0.02]), np.array([0.92, 0.08]), np.zeros((6, 2, 1, 1))
     side, z = np.array([0.0, 1.0]), np.array([0.0, 0.92, 1.0])
     box = Box(side, side, z, none, none, strain.reshape(2, 1, 1))
-    for found in (quantities.exceeded_strain(box), common_recovery.exceeded_strain(strain, volume)):
+    for found in (tables.exceeded_strain(box), common_recovery.exceeded_strain(strain, volume)):
         assert found == pytest.approx(0.01 * (1 + 0.49 / 0.5), rel=1e-12)
 
 
@@ -390,7 +388,7 @@ def test_no_parabola_goes_across_a_kink_of_the_yield_stress(rows, most, place):
     for found in (
         recovery.Stresses.largest(flat, 0 * field, field),
         spatial.Stresses.largest(space, 0 * field[None, None], field[None]),
-        quantities.largest_mises(z, snapshot, kinks)[::-1],
+        tables.largest_mises(z, snapshot, kinks)[::-1],
     ):
         assert found == (pytest.approx(most, rel=1e-12), pytest.approx(place, rel=1e-12))
 
@@ -424,7 +422,7 @@ def test_what_has_yielded_gives_its_own_stress(strained):
     """
     z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
     peak = SimpleNamespace(mises=q[:, None], flowed=np.full((4, 1), strained > 0))
-    depth, largest = quantities.largest_mises(z, peak)
+    depth, largest = tables.largest_mises(z, peak)
     expected = (1.0, 0.3) if strained else common_recovery.parabola_peak(z[1:], q[1:])
     assert (largest, depth) == pytest.approx(expected, rel=1e-12)
     within, axis, empty = np.zeros((4, 1, 4)), np.zeros((4, 2)), np.zeros(2)

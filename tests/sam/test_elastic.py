@@ -13,7 +13,7 @@ from sam import choose_grid
 from sam.contact.convolution import Counters
 from sam.contact.normal import solve_contact
 from sam.planner.bodies import Bodies, coarse, hertz_semi_axes
-from sam.results.quantities import extrapolated
+from sam.results.tables import extrapolated
 from sam.scene import Status
 from sam.schedule import Approach, Load
 from verification.cost.plan import plan

@@ -15,7 +15,7 @@ import sam
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
 from sam.contact.operators import SurfaceOperators
-from sam.elastic.stress import sliding_of
+from sam.elastic.problem import sliding_of
 from sam.grid.cells import Window
 from sam.kernels.patches import Lags, displacement_coefficients, parity
 from sam.planner.bodies import Bodies

@@ -14,14 +14,14 @@ from rounding import close
 import sam
 from sam import choose_grid
 from sam.contact.convolution import Counters
-from sam.contact.operators import CoatedBodies, SurfaceOperators
+from sam.contact.operators import CoatedBodies, CoatedPair, SurfaceOperators
 from sam.grid.cells import Window
-from sam.grid.smooth import contact_radius, depths_with_film
+from sam.grid.demands import contact_radius, depths_with_film
+from sam.half_space import ElasticConstants, ElasticPair
 from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_coefficients
-from sam.layered.patches import LayeredPatches, RadialTable, spline_matrix, wave_numbers
-from sam.layered.response import Layers, Response
-from sam.results.quantities import coated_quantities
-from sam.results.snapshots import Coated, Comparison
+from sam.layered.patches import LayeredPatches, Layers, RadialTable, Response, spline_matrix, wave_numbers
+from sam.results.history import Coated, Comparison
+from sam.results.tables import coated_quantities
 from sam.scene import Scene, Status
 
 THICKNESS = 1e-7
@@ -346,15 +346,15 @@ def test_depths_on_one_side_of_the_interface_say_nothing_of_the_other(deep, film
 def test_traction_moves_the_coated_body_and_the_counter_body_apart():
     """Both parts by direct sums over cells, each with a coefficient of friction of its own."""
     rng, n, h = np.random.default_rng(1), 7, 0.3e-6
-    layered, modulus = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), 100e9
-    other, slip = (1 - 0.33**2) / 70e9, (1 - 2 * 0.33) * 2 * 1.33 / 70e9
+    layered, slip = LayeredPatches(Layers(80e9, 0.25, 0.4e-6, 210e9, 0.3)), (1 - 2 * 0.33) * 2 * 1.33 / 70e9
+    pair = ElasticPair(ElasticConstants(210e9, 0.3), ElasticConstants(70e9, 0.33))
     mu, p = rng.random((n, n)), 1e9 * rng.random((n, n))
     kernel = layered.displacement(Lags(n, n, h, h), component=3, load=1)
     kernel = kernel - slip * h * displacement_coefficients(Lags(n, n, 1.0, 1.0), 0.0, component=3, load=1)
     lag = np.arange(n)[:, None] - np.arange(n)
     signed = np.sign(lag)[:, :, None, None] * kernel[np.abs(lag)[:, :, None, None], np.abs(lag)[None, None]]
     expected = np.einsum("ikjm,km->ij", signed, mu * p)
-    bodies = CoatedBodies(layered, h, modulus, compliance=other, tangential=slip)
+    bodies, modulus = CoatedBodies(CoatedPair(layered, pair, 0.4e-6), h), pair.contact_modulus
     grid = SurfaceOperators((n, n), 1.0, Counters(), coupling=mu, bodies=bodies)
     found = grid.tangential(grid.whole, grid.whole)(2 * p / modulus) * h
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()

@@ -9,9 +9,9 @@ from builders import PERFECT, scene
 from scipy.integrate import quad
 
 import sam
-from sam.elastic.misfit import PROFILES, MisfitSphere
+from sam.elastic.problem import PROFILES, MisfitSphere
 from sam.grid.cells import CellGrid, Room
-from sam.grid.smooth import MisfitDemand
+from sam.grid.demands import MisfitDemand
 from sam.half_space import ElasticConstants
 from sam.scene import Grid, Scene, resolved
 from verification.reference.mindlin_cheng import EigenstrainSphere

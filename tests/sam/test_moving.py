@@ -13,15 +13,15 @@ import sam
 from sam.grid.cells import CellGrid, Window
 from sam.moving import Track, _cross as cross_table, _track as track_table
 from sam.planner.make import schedule_of
-from sam.results.quantities import refined_peak
-from sam.results.snapshots import Box
+from sam.results.history import Box
+from sam.results.tables import refined_peak
 from sam.scene import HeightMap, Scene, SceneError, Status
-from sam.scene.groove import Groove
 from sam.scene.result import UNLOADED
 from sam.scene.surface import CounterSurface, Strip, heights
+from sam.scene.verdict import Groove
 from sam.schedule import Load
 from sam.tribofilm.law import FilmLaw, FilmState
-from sam.tribofilm.state import FilmOnCells, VisitLaw, bins_of_visits
+from sam.tribofilm.state import FilmOnCells, bins_of_visits
 
 # the path and its passes
 
@@ -306,7 +306,7 @@ HALF = 1.0  # of the contact
 
 def swept(track: Track, cycles: int, steps: int = 40):
     """(cycle, film) after each step of a contact of half-width HALF over cells in a row."""
-    film_of = FilmOnCells(LAW, (len(ALONG), 1), VisitLaw(RATE, track.period))
+    film_of = FilmOnCells(LAW, (len(ALONG), 1), RATE, track.period)
     film = film_of.fresh(np.zeros((4, len(ALONG), 1)))
     for cycle in range(1, cycles + 1):
         ways = np.linspace(0.0, TRACK, steps + 1)
@@ -350,7 +350,7 @@ def test_to_and_fro_the_film_thins_least_near_the_ends():
 
 
 def test_a_failure_lasts_for_the_visit_and_unloading_in_place_ends_none():
-    film_of, shape = FilmOnCells(LAW, (2, 1), VisitLaw(RATE, 1.0)), (2, 1)
+    film_of, shape = FilmOnCells(LAW, (2, 1), RATE, 1.0), (2, 1)
     film = film_of.fresh(np.zeros((4, *shape)))
     too_much = np.array([[5e9], [0.0]])  # more than the film bears
 

@@ -10,8 +10,8 @@ from sam.kernels.eigenstrain import MIRRORED, own_stress
 from sam.kernels.layer_stress import CornerFunctions, LayerStress
 from sam.kernels.patches import Cuboids, Lags
 from sam.kernels.waves import nodes as nodes_of
-from sam.plasticity.images import PeriodImages
 from sam.plasticity.spectra import GAUSS, ODD_X, ODD_Y
+from sam.plasticity.swept import PeriodImages
 
 CELLS, SIDES = (16, 16), np.array([16.0, 20.0])  # cells of 1 x 1.25
 EVEN, GRADED = (0.0, 2.0, 4.0, 6.0), (0.5, 0.8, 2.0, 6.0)

@@ -10,14 +10,14 @@ import pytest
 import sam
 from sam.contact.convolution import Counters
 from sam.contact.normal import Search, solve_contact
-from sam.contact.periodic import PeriodicHalfSpaces
+from sam.contact.operators import PeriodicHalfSpaces
 from sam.grid.cells import Window
-from sam.grid.rough import step_across, tapered
+from sam.grid.demands import step_across, tapered
 from sam.kernels.patches import STRESS, Cuboids, Lags, displacement_coefficients, stress_coefficients
 from sam.kernels.waves import in_cells, load_waves
-from sam.plasticity.images import PeriodImages
 from sam.plasticity.spectra import BoxOperator, PeriodicOperator
-from sam.results.rough import spots_of
+from sam.plasticity.swept import PeriodImages
+from sam.results.tables import spots_of
 from sam.scene import HeightMap, Scene
 
 HELD, NU = PeriodicHalfSpaces(), 0.3

@@ -9,13 +9,12 @@ from builders import LINEAR, PERFECT, RUN_IN_STEEL, running_in, scene, yielding
 from plastic_start import begin, shrink_first_box
 
 import sam
-import sam.grid.smooth
+import sam.grid.demands
 from sam import choose_grid
 from sam.contact.convolution import Counters
-from sam.elastic.history import solve_elastic
-from sam.elastic.stress import elastic_peak
+from sam.elastic.problem import elastic_peak, solve_elastic
 from sam.grid.cells import MOST_TIMES, RATIO, Room, Sides, enlarged
-from sam.grid.smooth import point_load_reach
+from sam.grid.demands import point_load_reach
 from sam.planner.bodies import SHAPES, given_sides, hertz_semi_axes
 from sam.planner.make import schedule_of
 from sam.plasticity import history, load_step as plastic_step
@@ -70,7 +69,7 @@ def test_the_body_is_of_cells_of_the_grid(swift4):
     for faces, centres, h in ((body.x, grid.x, grid.hx), (body.y, grid.y, grid.hy)):
         first = np.abs(centres - h / 2 - faces[0]).argmin()
         np.testing.assert_allclose(faces[1:] - h / 2, centres[first : first + len(faces) - 1], atol=1e-12 * h)
-    np.testing.assert_allclose(body.z, grid.layer_faces[: len(body.z)], rtol=1e-12)
+    np.testing.assert_allclose(body.z, grid.faces[: len(body.z)], rtol=1e-12)
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
@@ -226,9 +225,9 @@ def test_a_given_grid_that_is_too_small_is_named_by_its_side(given, words):
 @pytest.mark.parametrize("plasticity", [None, PERFECT])
 def test_a_chosen_grid_is_enlarged_and_the_solve_can_be_continued(monkeypatch, plasticity):
     """4 cells in Hertz's radius, not told of the plastic zone: no load step is taken twice."""
-    monkeypatch.setattr(sam.grid.smooth, "PLASTIC_CELLS", 17)
-    monkeypatch.setattr(sam.grid.smooth, "FARTHEST", 0.0)
-    monkeypatch.setattr(sam.grid.smooth, "DEFAULT_CELLS", 25)
+    monkeypatch.setattr(sam.grid.demands, "PLASTIC_CELLS", 17)
+    monkeypatch.setattr(sam.grid.demands, "FARTHEST", 0.0)
+    monkeypatch.setattr(sam.grid.demands, "DEFAULT_CELLS", 25)
     given = yielding(7, PERFECT, loading={"steps": 2, "unload": False})
     if plasticity is None:
         given = scene(loading={"force": given.loading.force})

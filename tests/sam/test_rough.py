@@ -7,7 +7,7 @@ from builders import LINEAR, STEEL, scene
 
 from sam import UnsupportedScene, left_out, plan, solve
 from sam.contact.convolution import Counters
-from sam.results.rough import in_the_fall_off, too_few_cells
+from sam.results.tables import in_the_fall_off, too_few_cells
 from sam.scene import COUNTER_HEIGHT, CounterSurface, HeightMap, Scene, SceneError, Status
 from sam.scene.surface import heights
 

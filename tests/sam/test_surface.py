@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from builders import measured_scene
 
-from sam.grid.rough import RoughPatch
+from sam.grid.demands import RoughPatch
 from sam.scene import Grid, HeightMap, SceneError, Surface, load_scene
 from sam.scene.surface import (
     BORDER,
@@ -18,7 +18,7 @@ from sam.scene.surface import (
     roughness_as_read,
     with_relief,
 )
-from sam.scene.surface.measured import fitted_form, harmonic, resampled
+from sam.scene.surface.making import fitted_form, harmonic, resampled
 from verification.robustness.fuzz import npz
 
 SIDE = 64e-6

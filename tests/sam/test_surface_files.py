@@ -16,9 +16,9 @@ from builders import measured_scene as rough
 import sam
 from sam.scene import HeightMap, Scene, SceneError, inputs, resolved
 from sam.scene.inputs import InputError
-from sam.scene.surface import processed, readers
+from sam.scene.surface import height_map, processed
+from sam.scene.surface.height_map import read_named
 from sam.scene.surface.instrument_child import RefusedError, heights_in
-from sam.scene.surface.readers import read_named
 from verification.robustness.fuzz import good_heights, npz, table, with_pickle
 from verification.runs.store import identity
 
@@ -330,16 +330,17 @@ def test_a_reader_that_hangs_or_dies_is_a_refusal(monkeypatch, tmp_path, script,
     (tmp_path / "child.py").write_text(script)
     monkeypatch.setattr(inputs, "CHILD", tmp_path / "child.py")
     monkeypatch.setattr(inputs, "SECONDS", 0.5 if "sleep" in script else 30.0)
-    monkeypatch.setattr(readers, "find_spec", lambda _: True)
+    monkeypatch.setattr(height_map, "find_spec", lambda _: True)
     with pytest.raises(InputError, match=message):
-        readers.read_instrument("h.sdf", b"")
+        height_map.read_instrument("h.sdf", b"")
 
 
 def test_without_the_extra_only_our_own_files_are_read(monkeypatch, tmp_path):
-    monkeypatch.setattr(readers, "find_spec", lambda _: None)
+    monkeypatch.setattr(height_map, "find_spec", lambda _: None)
     words = r"surface.path = .h.al3d.: .*SurfaceTopography, the extra .instruments., not installed"
     with pytest.raises(SceneError, match=words):
         rough(tmp_path, "h.al3d", b"AliconaImaging")
     for name, content in (("h", good_heights()), ("h.txt", table())):
         assert read_named(name, content).cells == (12, 10)
-    assert readers.formats_of("a/b.DAT") == ("asc", "metropro") and readers.formats_of("scene.toml") == ()
+    formats_of = height_map.formats_of
+    assert formats_of("a/b.DAT") == ("asc", "metropro") and formats_of("scene.toml") == ()

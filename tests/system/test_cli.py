@@ -19,7 +19,7 @@ from builders import HARDENING, MODULUS, RADIUS, parsed, scene_text
 import fem_reference.axisymmetric.planner
 import sam
 from sam.half_space import circular_contact_radius
-from sam.planner import bodies, make, stages
+from sam.planner import bodies, make
 from sam.scene import LeftOut
 from samfem.cli import main
 from verification.runs import models
@@ -231,7 +231,7 @@ def calls_of(functions, act) -> dict[str, int]:
 
 
 SMALL = "[grid]\ncells = [9, 9]\n[solver]\ntolerance = 1e-3\n"
-ONCE = (make.check_bodies, make.plan_of, make.schedule_of, stages.stages_of, bodies._by_hertz)
+ONCE = (make.check_bodies, make.plan_of, make.schedule_of, make.stages_of, bodies._by_hertz)
 
 
 @pytest.mark.parametrize("add", [SMALL, SMALL + f"[body.plasticity]\n{HARDENING['swift']}"])

@@ -15,7 +15,7 @@ import pytest
 
 from sam.scene import PATH_QUANTITIES, QUANTITIES, load_scene
 from sam.scene.inputs import Inputs
-from sam.scene.load import scene_of
+from sam.scene.schema import scene_of
 from samfem.cli import COMMANDS, _options
 from verification.cases import all_cases
 from verification.cost.plan import plan

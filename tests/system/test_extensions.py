@@ -13,8 +13,7 @@ from builders import HARDENING, SHAPES, SPHERE_TEXT, YIELD_CURVE, scene
 from sam.grid.cells import CellGrid
 from sam.planner import bodies
 from sam.scene import load_scene
-from sam.scene.body import LAWS
-from sam.scene.counterbody import SHAPES as SHAPES_OF_SCENES
+from sam.scene.body import LAWS, SHAPES as SHAPES_OF_SCENES
 from verification.checks.conditions import GAPS
 from verification.checks.material import yield_stress
 

@@ -21,7 +21,7 @@ from made_results import of_frame
 
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
-from sam.scene.load import parse_toml, scene_of
+from sam.scene.schema import parse_toml, scene_of
 from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan

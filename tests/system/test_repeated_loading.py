@@ -11,7 +11,7 @@ import pytest
 
 from fem_reference.common.back_stress import KinematicJ2
 from sam.plasticity.flow import KinematicFlow
-from sam.plasticity.progress import Progressed
+from sam.plasticity.model import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve

@@ -9,7 +9,7 @@ import pytest
 from builders import scene_text
 
 from sam.scene import Scene, load_scene
-from sam.scene.load import parse_toml
+from sam.scene.schema import parse_toml
 from samfem.cli import SHELLS, STARTS
 from samfem.compared import asked
 from samfem.starting import KINDS, SCENES, json_schema

@@ -10,7 +10,7 @@ from builders import MODULUS, PERFECT, scene
 import fem_reference
 import sam
 from fem_reference.common.hertz import force_of_approach, scales
-from sam.grid.gap import RoundedPunch as SamPunch
+from sam.grid.cells import RoundedPunch as SamPunch
 from sam.planner.make import UnsupportedScene
 from verification.reference.rounded_punch import RoundedPunch
 

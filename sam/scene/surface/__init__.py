@@ -4,9 +4,18 @@ generator, and numbers that describe them.
 """
 
 from sam.scene.surface.counter import CounterSurface, Strip, leading
-from sam.scene.surface.generators import BORDER, border_cells, heights, mean_deviation, with_relief
 from sam.scene.surface.height_map import FrictionMap, HeightMap
-from sam.scene.surface.measured import Roughness, processed, roughness, roughness_as_read
+from sam.scene.surface.making import (
+    BORDER,
+    Roughness,
+    border_cells,
+    heights,
+    mean_deviation,
+    processed,
+    roughness,
+    roughness_as_read,
+    with_relief,
+)
 from sam.scene.surface.section import Surface, patch_of
 
 __all__ = [

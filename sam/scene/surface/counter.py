@@ -20,7 +20,7 @@ import numpy as np
 
 from sam.arrays import Array
 from sam.scene.section import Conflict, broken, stated
-from sam.scene.surface.generators import centres, fall, heights, mean_deviation
+from sam.scene.surface.making import centres, fall, heights, mean_deviation
 from sam.scene.surface.section import CLOSE, Surface, coarse_grid
 
 WHOLE = 1e-6  # of a cell: a way of so much more or less is that of whole cells

@@ -12,8 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from sam.scene.inputs import listed
 from sam.scene.numerics import Grid
 from sam.scene.section import Conflict, Given, Section, broken, of_choice, stated
-from sam.scene.surface.height_map import HeightMap
-from sam.scene.surface.readers import HeightField
+from sam.scene.surface.height_map import HeightField, HeightMap
 from sam.scene.units import (
     CELLS,
     LENGTH,
@@ -80,12 +79,12 @@ class Surface(Section):
     in Python a HeightMap. extent and unit say what the file does not: what a matrix of heights covers, its
     outer cells as a whole, and the unit of its numbers; they are part of the map when it is read, and None
     then.
-    What is done to it, in this order, see sam.scene.surface.measured: form ("none" if not
+    What is done to it, in this order, see sam.scene.surface.making: form ("none" if not
     given): "tilt", "sphere" or "quadratic" is taken off; missing ("refuse" if not given): "harmonic" fills
     missing points; crop: [lx, ly], or [x, y, lx, ly], the part of that size with its middle at (x, y) from
     the middle of the map, rounded to whole cells; resample: "fourier" lets grid.cells be any, which else are
     those of the file; taper: on a periodic patch, the share of each side in which heights are blended so that
-    they repeat. The other kinds are made on any grid, see sam.scene.surface.generators. "self-affine":
+    they repeat. The other kinds are made on any grid, see sam.scene.surface.making. "self-affine":
     ra or sq, cutoff_long, cutoff_short, hurst, anisotropy (1 if not given), seed; "hard-turned": ra, feed,
     nose_radius and feed_share as well; "sinusoid": amplitude, wavelength_x and wavelength_y (one alone: a
     wave).

@@ -16,11 +16,11 @@ from verification.robustness.mutants.changes import Mutant, find, rows
 
 CORE = {
     "sam": "moving schedule wear",
-    "sam.contact": "box convolution normal operators stress",
-    "sam.elastic": "misfit problem stress",
-    "sam.grid": "gap",
+    "sam.contact": "box convolution normal operators",
+    "sam.elastic": "problem",
+    "sam.grid": "cells",
     "sam.kernels": "eigenstrain layer_stress patches primitives",
-    "sam.layered": "patches response",
+    "sam.layered": "patches",
     "sam.plasticity": "cell_means flow load_step measure paper points spectra state",
     "sam.scene": "body verdict yield_curve",
     "sam.scene.surface": "counter",
@@ -36,7 +36,7 @@ CORE = {
 AROUND = (
     *("verification.reference", "verification.compare", "verification.uncertainty"),
     *("verification.rows", "verification.judging", "verification.quantities", "verification.references"),
-    "sam.grid.smooth",
+    "sam.grid.demands",
 )
 """Packages and modules of which, as of the comparisons and conditions of the core, PERCENT are drawn."""
 PERCENT, SEED = 33, 417
