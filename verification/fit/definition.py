@@ -48,6 +48,9 @@ STEPS = 12
 """Load steps to the peak, and half as many back, where the scene has no number of them."""
 CELLS = 8
 """Elements in the contact radius, where the scene has no table [fem]; both are halved for the coarse grid."""
+SIDE = 31
+"""Cells along a side of the patch of SAM, where the scene has no number of them: depths of a Swift steel are
+within 0.03 % of those on its own grid, in a tenth of the time, and half of them are a coarse grid."""
 Length = Annotated[float, Number("a length", 1e-12, 1e3, "m", "1 um")]
 Force = Annotated[float, Number("a force", 1e-12, 1e9, "N", "10 N")]
 Pressure = Annotated[float, Number("a pressure", 1e3, 1e15, "Pa", "210 GPa")]
@@ -294,6 +297,8 @@ def with_load(scene: Scene, force: float, **ball: float | None) -> Scene:
     tables["loading"] = {"force": force, "steps": steps, **unload}
     if scene.fem == Fem():
         tables["fem"] = {"cells_per_radius": CELLS}
+    if scene.grid is None:
+        tables["grid"] = {"cells": [SIDE, SIDE]}
     tables["counterbody"] |= {key: value for key, value in ball.items() if value is not None}
     return Scene(**tables)
 
@@ -329,9 +334,9 @@ def _test(k: int, test: Measured, scene: Scene, measured: tuple[Points, str]) ->
 
 
 def _cheapest(scene: Scene) -> str:
-    """The axisymmetric finite elements where they can represent the scene, else the semi-analytical model."""
+    """The semi-analytical model where it can represent the scene, else axisymmetric finite elements."""
     try:
-        models.check(scene, models.FEM)
+        models.check(scene, models.SAM)
     except models.ModelError:
-        return models.SAM
-    return models.FEM
+        return models.FEM
+    return models.SAM

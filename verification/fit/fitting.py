@@ -53,8 +53,9 @@ ROUNDS = 3  # on the fine grid, at most; after each the noise is estimated
 SETTLED = 0.3  # standard deviations by which the parameters may still move in the last round
 DETERMINED = 0.35  # of a logarithm: a half-width of 42 %; of others the same share of their bounds
 NAMED = 0.4  # of the largest weight in a combination, from which on a parameter is named
-FACTORS = ((0.1, 1.0), (8.0, 1.0), (1.0, 0.3), (1.0, 3.0))
-"""(force, radius) of the further tests that are looked at, over those of the first."""
+FACTORS = ((8.0, 1.0), (1.0, 0.3), (0.1, 1.0))
+"""(force, radius) of the further tests that are looked at, over those of the first; the last where the body
+has layers: one without strains less under less force, as under a larger ball, and noise hides more."""
 RICHARDSON = 3.0  # K of (c); by twice the cells, depths of two steels are off by 0.26 of the change
 LOOSE = 100.0  # widths of the bounds: a standard deviation that says that nothing is known
 DRAWS, SEED = 400, 1
@@ -191,11 +192,14 @@ def fit(definition: Definition, answers: Answers, *, ahead: bool = True) -> Fitt
 
 @dataclass
 class _Search:
-    """The search of a fit. fine: on the grid of the scene; sigma: standard deviation of each test in m."""
+    """The search of a fit. fine: on the grid of the scene; far: parameters whose differences go to a bound;
+    sigma: standard deviation of each test in m.
+    """
 
     definition: Definition
     answers: Answers
     fine: bool = False
+    far: set[int] = field(default_factory=set)
     sigma: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -302,14 +306,15 @@ class _Search:
         base, rest, columns = self.depths(x), self.machine(x), []
         for k, p in enumerate(self.parameters):
             low, high = (float(p.sought(end)) - x[k] for end in (p.low, p.high))
-            usual = STEP * self.wide[k]
-            for step in (usual if high > usual else -usual, max(low, high, key=abs)):
+            usual, most = STEP * self.wide[k], max(low, high, key=abs)
+            for step in (most,) if k in self.far else (usual if high > usual else -usual, most):
                 other = x.copy()
                 other[k] += step
                 new, old = (self.depths(other), base) if k < self.n else (self.machine(other), rest)
                 change = self.whitened([f - g for f, g in zip(new, old, strict=True)])
                 if np.linalg.norm(change) > QUANTILE:
                     break
+                self.far.add(k)
             columns.append(change / step)
         return np.stack(columns, axis=1)
 
@@ -344,7 +349,9 @@ class _Search:
         first, found = self.definition.tests[0], []
         ball, load = first.scene.counterbody, first.scene.loading.force
         assert ball is not None and ball.radius is not None and load is not None
-        for more, larger in FACTORS:
+        plasticity = first.scene.body.plasticity
+        layered = plasticity is not None and bool(plasticity.profile or plasticity.layer_thickness)
+        for more, larger in FACTORS if layered else FACTORS[:-1]:
             force, radius = more * load, larger * ball.radius
             share, back = np.linspace(0.05, 1.0, 20), np.arange(40) >= 20
             points = Points(np.tile(share, 2) * force, np.ones(40), back)
@@ -352,7 +359,7 @@ class _Search:
             test = Test(f"F {more:g}, R {larger:g}", "curve", scene, points, self.sigma[0])
             alone = replace(self.definition, tests=(test,), of_machine=())
             try:
-                own = _Search(alone, self.answers).jacobian(fitted.sought[: self.n])
+                own = replace(self, definition=alone, fine=False).jacobian(fitted.sought[: self.n])
             except FitError:  # beyond the model
                 continue
             own = np.pad(own, ((0, 0), (0, fitted.sought.size - self.n)))

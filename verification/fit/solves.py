@@ -42,23 +42,26 @@ Answers = Callable[[Test, Variables, bool], Answer]
 
 @dataclass
 class Solves:
-    """Answers by solving, each different scene once. told: of the number of solves."""
+    """Answers by solving, each different scene once. told: of the number of solves; twice: whether tests are
+    loaded a second time, as the unloading of one was elastic, and has no load steps.
+    """
 
     model: str
     store: Store | None
     told: Progress = lambda *_: None
     known: dict[str, Result] = field(default_factory=dict)
-    twice: set[str] = field(default_factory=set)
+    twice: bool = False
 
     def __call__(self, test: Test, values: Variables, fine: bool) -> Answer:
-        """The answer; an unloading that is elastic, which has no load steps, is that of a second cycle.
+        """The answer; an unloading that is elastic is that of a second cycle.
 
         Raises FitError where the model does not hold, or was not solved.
         """
         scene = test.at(values) if fine else coarser(test.at(values))
-        result = self._once(_again(scene) if test.name in self.twice else scene)
-        if test.points.unloading.any() and test.name not in self.twice and not _unloads(result):
-            self.twice.add(test.name)
+        back = bool(test.points.unloading.any())
+        result = self._once(_again(scene) if back and self.twice else scene)
+        if back and not self.twice and not _unloads(result):
+            self.twice = True
             result = self._once(_again(scene))
         radius, found = scene.counterbody.radius if scene.counterbody else None, result.quantities
         ratio = (found["contact_radius_m"] or 0.0) / (radius or np.inf)

@@ -293,19 +293,21 @@ def unloaded(context: Context) -> Iterator[dict[str, Any]]:
 
 
 def further(context: Context) -> Iterator[dict[str, Any]]:
-    """Rows of fits that are solved: what one test leaves of Swift's constants, and with the proposed one."""
+    """Rows of fits that are solved: what tests leave of Swift's constants, each the proposed one."""
     draws, law = np.random.default_rng(SEED), replace(LAWS["swift"], tests=LAWS["swift"].tests[:1])
     values, data, shape = law.values([0.0] * 3), np.empty((0, 21)), [1e-6 * np.append(0.1, SHARE)]
-    for tests in ("one", "two"):
-        context.progress(f"{context.case}: {tests}", 1, 2)
+    for tests in ("one", "two", "three"):
+        context.progress(f"{context.case}: {tests}", 1, 3)
         last = replace(law, tests=law.tests[-1:])
         exact = solved(last, "data", values, shape=shape, store=context.store)[:, 2:]
         data = np.concatenate([data, exact + 0.005 * exact[:, -1:] * draws.normal(size=exact.shape)])
         defined = law.definition(list(data), [0.005 * float(each) for each in data[:, -1]])
-        found = fit(defined, Solves(SAM, context.store))
+        solves = Solves(SAM, context.store)
+        found = fit(defined, solves)
         named = {name.rpartition(".")[2] for _, names in found.open_combinations for name in names}
         wide = {f"wide-{key[-1].lower()}": w for key, w in zip(values, found.half_widths, strict=True)}
-        yield {"sweep": "further", "tests": tests, "open": "".join(sorted(named)), **wide}
+        counted = {"solves": len(solves.known), "open": "".join(sorted(named))}
+        yield {"sweep": "further", "tests": tests, **counted, **wide}
         if found.further:
             law = replace(law, tests=[*law.tests, (found.further[0].radius, found.further[0].force)])
 
