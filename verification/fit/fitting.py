@@ -243,7 +243,13 @@ class _Search:
         inside = np.clip(x, np.nextafter(bounds[0], np.inf), np.nextafter(bounds[1], -np.inf))
         shift = inside - 1.0  # the trust region begins with the norm of the variables
         how: dict[str, Any] = {"bounds": tuple(end - shift for end in bounds), "max_nfev": most}
-        how |= {"method": "dogbox", "x_scale": "jac", "ftol": 1e-3, "xtol": 1e-6, "gtol": 1e-6}
+        how |= {
+            "method": "dogbox",
+            "x_scale": "jac",
+            "ftol": 1e-3 if self.fine else 3e-3,
+            "xtol": 1e-6,
+            "gtol": 1e-6,
+        }
         answer = least_squares(
             lambda at: self.residuals(at + shift), inside - shift, lambda at: updated(at + shift), **how
         )
