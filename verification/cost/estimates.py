@@ -59,8 +59,8 @@ ELASTIC_ITERATIONS = 1  # of a load step of SAM below a rough body in which noth
 # Fitted to ratios of 0.9 to 6.2 and 1 to 25 cycles: times within a factor 1.5, of seven others one by 1.7.
 ROUGH_POWER = 2.5
 WITHOUT_FILM, MOST_WITHOUT_FILM = 0.6, 2.3
-# Cells in which a film fails add iterations. Counted over 25 cycles of bulk, curve A and curve B, with a renewed
-# counter-surface and without: 111 to 396 iterations with those of elastic steps, within a factor of 1.4.
+# Cells in which a film fails add iterations. Counted over 25 cycles of bulk, curve A and curve B, with a
+# renewed counter-surface and without: 111 to 396 with those of elastic steps, within a factor of 1.4.
 WITH_FILM, MOST_WITH_FILM = 1.5, 7.0
 ROUGH_DIGITS = 3.0
 # Cells that a cycle removes were those that had hardened: after it by a factor more iterations where the
