@@ -451,8 +451,9 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
 def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | None:
     """`lines Y,Y over X by SERIES in PANEL on AXES at LEVELS`: columns over an axis or a column, each a
     number or an array; what is expected is a line below the marks of what is found. Series and panels are
-    told by one axis or by several, "model,size", and by the column where there are several. on: logarithmic
-    axes; at: levels that are marked. None where no line has two points.
+    told by one axis or by several, "model,size", and by the column where there are several (of one scale if
+    the file has a label "y"). on: logarithmic axes; at: levels that are marked. None where no line has two
+    points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
@@ -493,7 +494,7 @@ def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | Non
     marks = {file.labels.get("limit", "limit"): ("y", *levels)} if levels else {}
     how = {"logarithmic": said.get("on", ""), "marks": marks, "count": bool(COUNTS.match(at))}
     if len({title for _, title in panels}) == 1:
-        drawing = curves({label: own for (label, _), own in panels.items()}, at, None, **how)
+        drawing = curves({label: own for (label, _), own in panels.items()}, at, file.labels.get("y"), **how)
     elif len(shown) == 1:
         drawing = curves({title: own for (_, title), own in panels.items()}, at, shown[0], **how)
     else:

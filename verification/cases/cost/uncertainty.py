@@ -11,7 +11,16 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import FEM, SAM, Context, DataFrame, with_grid, with_keys, with_loading
+from verification.cases.case import (
+    FEM,
+    SAM,
+    Context,
+    DataFrame,
+    SmallTable,
+    with_grid,
+    with_keys,
+    with_loading,
+)
 from verification.cases.recipes import at_ratio
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
@@ -63,21 +72,22 @@ def rows_of(
     for name, (value, doubt) in truth.items():
         entry = found.uncertainty.get(name, {})
         if entry.get("u_num") is not None:
-            row = {"sweep": "", "model": "sam", "problem": problem, "quantity": name}
+            row = {"sweep": "Values", "model": "sam", "problem": problem, "quantity": name}
             yield row | judged(entry, value, doubt=doubt)
 
 
 def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str, float]:
-    """Error and uncertainties over the truth, and whether it is covered. doubt: uncertainty of the truth."""
+    """Error and uncertainties over the truth, and whether it is covered; nothing of a value that does not
+    count. doubt: uncertainty of the truth.
+    """
     own, error = entry["u_num"], abs(entry["values"][0] - truth)
-    rules = {"uncertainty": own, "textbook": textbook(entry)}
-    row = {"error": error / abs(truth)} | {name: value / abs(truth) for name, value in rules.items()}
     if doubt > max(own, error) / KNOWN:
-        return row
-    row |= {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
-    # as they are drawn, on logarithmic axes
-    drawn = {f"by-{name}": max(row[name], 1e-9) for name in rules} | {"of-error": max(row["error"], 1e-9)}
-    row |= drawn | {f"by-{name} expected": drawn["of-error"] for name in rules}
+        return {}
+    rules = {"uncertainty": own, "textbook": textbook(entry)}
+    # they are drawn on logarithmic axes
+    drawn = {name: max(value / abs(truth), 1e-9) for name, value in ({"error": error} | rules).items()}
+    row = drawn | {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
+    row |= {f"{name} expected": drawn["error"] for name in rules}
     return row | {"over-error": own / max(error, 1e-12 * abs(truth))}
 
 
@@ -270,6 +280,32 @@ def _drawn(make: Callable[[Draw, int], Scene], seed: tuple[int, ...], number: in
     scene = make(draw, seed[-1])
     cells = int(draw.integers(40, 50 if scene.body.plasticity else 100))
     return with_grid(scene, cells=(cells, cells))
+
+
+def by_problem(rows: DataFrame) -> SmallTable:
+    """A line for each kind of problem."""
+    return _both_rules(rows, rows["problem"].str.rstrip(" 0123456789"), "kind of problem")
+
+
+def by_quantity(rows: DataFrame) -> SmallTable:
+    """A line for each quantity."""
+    return _both_rules(
+        rows, rows["quantity"].replace({each.row: each.words for each in QUANTITIES.values()}), "quantity"
+    )
+
+
+def _both_rules(rows: DataFrame, of: Any, head: str) -> SmallTable:
+    """Of the values that count: how many each rule covers, and how wide it is. of: group of each row."""
+    lines = []
+    for name, own in rows.dropna(subset=["over-error"]).groupby(of, sort=False):
+        cells = [str(own["problem"].nunique()), str(len(own))]
+        for rule in ("uncertainty", "textbook"):
+            ratio = (own[rule] / own["error"]).median()
+            cells += [f"{1e2 * own[f'covered-by-{rule}'].mean():.0f}", f"{ratio:.2g}"]
+        lines.append((name, *cells))
+    columns = f"{head}|problems|values that count|covered [%]|median U/error"
+    columns += "|textbook rule: covered [%]|median U/error"
+    return SmallTable(f"Both rules, by {head}", columns.split("|"), lines)
 
 
 LEAST = 3  # values of a quantity with a median of its own
