@@ -354,11 +354,13 @@ SLIDING: Mapping[str, Quantity] = {
         for extent in ("depth", "length")
     },
     "decoupled": Quantity(
-        "deviation of the pressure from FEM (L2 at nodes), normal displacement by shear neglected over kept",
+        "deviation of the pressure from FEM (L2 at the nodes): normal displacement by shear neglected, "
+        "divided by the same with it kept",
         whole=partial(_decoupled, distance=lambda sam, fem, _: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
-        "deviation of the pressure from FEM (over 0.2 a), normal displacement by shear neglected over kept",
+        "deviation of the pressure from FEM (L2 of means over 0.2 a): normal displacement by shear "
+        "neglected, divided by the same with it kept",
         whole=partial(_decoupled, distance=lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
     **{
@@ -537,7 +539,11 @@ QUANTITIES: Mapping[str, Quantity] = {
         "mises_max_change", "change of the largest von Mises stress of the body by the film"
     ),
     "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
-    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=partial(_largest, of=_patch)),
+    "nodal-p-max": Quantity(
+        "largest pressure at the nodes of FEM, to which SAM is averaged",
+        "Pa",
+        between=partial(_largest, of=_patch),
+    ),
     "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
     "mises-below-film": Quantity(
         "von Mises stress of the body in y = 0, at the interface and the centres of the elements",

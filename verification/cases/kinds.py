@@ -247,9 +247,6 @@ def _mises_below_film(found: Solved) -> Plot:
     return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words)
 
 
-TOO_NEAR = "Near the surface, where the strain depends on the mesh, nothing is compared"
-
-
 def _strain_planes(found: Solved) -> Plot:
     """Plastic strain in y = 0 of SAM and the three-dimensional elements, with iso-lines, among them that of
     0.2 %. The maxima are those below the strip in which nothing is compared; what it holds is said beside
@@ -268,31 +265,33 @@ def _strain_planes(found: Solved) -> Plot:
     levels = iso_levels(max(each.value for each in peaks))
     drawing = plane_maps(pair, peaks, levels, strip=SHALLOWEST)
     words = (
-        "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. "
-        f"{TOO_NEAR} (hatched)."
+        "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. Near "
+        "the surface, where the strain depends on the mesh, nothing is compared (hatched)."
     )
     return Plot(drawing, "plane", "Plastic strain in the plane y = 0", words)
 
 
+BELOW = f"in the column of the largest strain below {SHALLOWEST:g} a"
 DEEP = 1.4  # radii to which profiles are drawn
 
 
 def _strain_profiles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
     """Plastic strain over depth of every run, a panel a variant."""
     fields = {name: planes(each) for name, each in found.items()}
-    for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
+    for name, place in (("axis", "on the axis"), ("column", BELOW)):
         panels = {}
         for variant, runs in fields.items():
             x = runs["fem"].place_of_maximum() if name == "column" else 0.0
             panel = panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {}
             for run in ("fem", *(run for run in runs if run != "fem")):
-                label, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
-                if label in LOOKS:
-                    panel[label] = Curve(z[z <= DEEP], PERCENT * runs[run].below(x, z[z <= DEEP]))
+                line, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
+                if line in LOOKS:
+                    look, z = {"label": label_of(file, "run", run)}, z[z <= DEEP]
+                    panel[line] = Curve(z, PERCENT * runs[run].below(x, z), look=look)
         drawing = curves(panels, "depth $z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
         text = (
-            "The curves compare the plastic strain in y = 0 at the peak by FEM, SAM and other forms of SAM. "
-            f"{TOO_NEAR} (grey)."
+            "The curves compare the plastic strain over depth in y = 0 at peak load by FEM and by each form "
+            "of SAM in the legend. Nothing is compared in the grey range, where it depends on the mesh."
         )
         yield Plot(drawing, name, f"Plastic strain over depth {place}", text)
 

@@ -245,6 +245,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             units = {column: QUANTITIES[column].unit for column in values if column in QUANTITIES}
             shown |= {column: f"{shown[column]} [{unit}]" for column, unit in units.items() if unit}
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
+        if not (sweep or rows[list(shown)].any(axis=None)):  # of counts that are all zero, the gates tell
+            continue
         known = {c: rows[c].dropna() for c in shown if c in rows}
         shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
         modelled = ["model"] * any(rows["model"])
