@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene import Result, Scene, Section
+from sam.scene import Result, Scene, Section, unit_of_key, with_units
 from verification.cases.case import Case, Context, Plot, SmallTable, View
 from verification.cases.recipes import RECIPES, beside, changed
 from verification.cases.sweep import MODELS, differences, framed, label_of, points, spelt, tables_of, taken
@@ -102,7 +102,7 @@ class Compared(Case):
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
-        """The keys of the scene in SI, what the reference says of it, and the discretisation."""
+        """The keys of the scene, what the reference says of it, and the discretisation."""
         yield from self.file.setting
         first = next(iter(found.values()))
         if first.scene is None:
@@ -110,7 +110,7 @@ class Compared(Case):
         scene = first.scene if first.results else first.frame["scene"].iloc[0]
         for name in ("body", "counterbody", "loading", "friction"):
             if (section := getattr(scene, name)) is not None:
-                yield f"{name}, SI", keys_of(section)
+                yield name.capitalize(), keys_of(section)
         if self.file.variants:
             yield "Variants", "; ".join(self.file.variants[name]["words"] for name in found)
         if first.reference:
@@ -181,7 +181,7 @@ class Compared(Case):
 
 
 def keys_of(section: Section, above: str = "") -> str:
-    """Keys and values of a table of a scene that are not left at their defaults."""
+    """Keys and values of a table of a scene that are not left at their defaults, numbers with their unit."""
     said = []
     for name in sorted(section.model_fields_set, key=list(type(section).model_fields).index):
         value = getattr(section, name)
@@ -189,7 +189,11 @@ def keys_of(section: Section, above: str = "") -> str:
             said.append(keys_of(value, f"{above}{name}."))
         elif value is not None and value != type(section).model_fields[name].default:
             shown = spelt(value) if isinstance(value, str | float | tuple) else str(value).lower()
-            said.append(f"{above}{name} = {shown}")
+            if unit := unit_of_key(type(section), name):
+                shown = (
+                    with_units(float(f"{value:.6g}"), unit) if isinstance(value, float) else f"{shown} {unit}"
+                )
+            said.append(f"{above}{name} = {shown}".replace(" um", " µm"))
     return ", ".join(filter(None, said))
 
 
