@@ -190,9 +190,8 @@ def keys_of(section: Section, above: str = "") -> str:
         elif value is not None and value != type(section).model_fields[name].default:
             shown = spelt(value) if isinstance(value, str | float | tuple) else str(value).lower()
             if unit := unit_of_key(type(section), name):
-                shown = (
-                    with_units(float(f"{value:.6g}"), unit) if isinstance(value, float) else f"{shown} {unit}"
-                )
+                alone = isinstance(value, float)
+                shown = with_units(float(f"{value:.6g}"), unit) if alone else f"{shown} {unit}"
             said.append(f"{above}{name} = {shown}".replace(" um", " µm"))
     return ", ".join(filter(None, said))
 

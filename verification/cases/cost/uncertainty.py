@@ -72,7 +72,7 @@ def rows_of(
     for name, (value, doubt) in truth.items():
         entry = found.uncertainty.get(name, {})
         if entry.get("u_num") is not None:
-            row = {"sweep": "Values", "model": "sam", "problem": problem, "quantity": name}
+            row = {"sweep": "", "model": "sam", "problem": problem, "quantity": name}
             yield row | judged(entry, value, doubt=doubt)
 
 
