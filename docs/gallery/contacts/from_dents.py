@@ -2,7 +2,7 @@
 """
 A modulus from force over depth
 ===============================
-From depths under a ball (closed form of Hertz with noise, 180 GPa) come the modulus and the zero of the depth,
+From depths under a ball (closed form of Hertz, noise, 180 GPa) come the modulus and the zero of the depth,
 with their confidence. The page "From dents to a yield curve" of the guide fits plasticity.
 """
 
