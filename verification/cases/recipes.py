@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Loading, Path, Plasticity, Scene
+from sam.scene.section import unit_of_key
+from sam.scene.units import in_unit
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.quantities import modulus_of
 from verification.reference.coated_sphere import CoatedContact
@@ -348,9 +350,13 @@ def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:
-    """The scene with keys set and recipes applied, in their order."""
+    """The scene with keys set, numbers in SI or with their units, and recipes applied, in their order."""
     for key, value in changes.items():
         section, _, name = key.rpartition(".")
+        if isinstance(value, str) and (unit := section and unit_of_key(Scene, key)):
+            if (exact := in_unit(value, unit)) is None:
+                raise ValueError(f"{file.path.name}: {key} = {value!r}; allowed: a number in units of {unit}")
+            value = float(exact)
         if section:
             scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
         else:

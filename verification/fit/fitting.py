@@ -97,8 +97,10 @@ class Fitted:
 
     @cached_property
     def covariance(self) -> np.ndarray:
-        """Of the variables."""
-        return self.noise_part + self.numerical_part
+        """Of the variables, at CONFIDENCE: that of the noise with Student's factor of so few points."""
+        free = sum(r.size for r in self.residuals) - self.sought.size
+        factor = student.ppf(0.5 + CONFIDENCE / 2.0, max(free, 1)) / QUANTILE
+        return np.asarray(factor**2 * self.noise_part + self.numerical_part)
 
     @property
     def values(self) -> dict[str, float]:
@@ -108,10 +110,7 @@ class Fitted:
     @cached_property
     def half_widths(self) -> np.ndarray:
         """Of the variables, at CONFIDENCE."""
-        free = sum(r.size for r in self.residuals) - self.sought.size
-        noise = student.ppf(0.5 + CONFIDENCE / 2.0, max(free, 1)) / QUANTILE
-        variance = noise**2 * np.diag(self.noise_part) + np.diag(self.numerical_part)
-        return np.asarray(QUANTILE * np.sqrt(variance))
+        return np.asarray(QUANTILE * np.sqrt(np.diag(self.covariance)))
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:

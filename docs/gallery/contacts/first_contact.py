@@ -2,8 +2,8 @@
 """
 First contact: a sphere on an elastic body
 ==========================================
-A rigid sphere is pressed on steel that stays elastic. Hertz gives the exact pressure, so the first contact
-shows at once how good the numbers are.
+A rigid sphere is pressed on steel that is taken as elastic, so that Hertz gives the exact pressure and shows
+at once how good the numbers are. A real steel would yield far earlier.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,8 @@
 """
 A modulus from force over depth
 ===============================
-Depths under a ball, made here by the closed form of Hertz with noise, are fitted: the modulus comes from the
-curve together with the zero of the depth, both with their confidence.
+From depths under a ball (closed form of Hertz, noise, 180 GPa) come the modulus and the zero of the depth,
+with their confidence. The page "From dents to a yield curve" of the guide fits plasticity.
 """
 
 import matplotlib.pyplot as plt

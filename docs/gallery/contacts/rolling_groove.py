@@ -3,7 +3,8 @@
 A rolling pass and its groove
 =============================
 A hard ball rolls once over steel that yields. The groove that it leaves is deepest where it began, and steady
-after two to three contact radii; material is pushed up beside it and at its ends.
+after two to three contact radii; material is pushed up beside it and at its ends. On this coarse grid its
+depth and the plastic strain are known to about 20 %: more cells and shorter steps along the path narrow that.
 """
 
 import matplotlib.pyplot as plt
