@@ -11,21 +11,13 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import (
-    FEM,
-    SAM,
-    Context,
-    DataFrame,
-    SmallTable,
-    with_grid,
-    with_keys,
-    with_loading,
-)
+from verification.cases.case import Context, DataFrame, SmallTable, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
 from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
+from verification.runs.models import FEM, SAM
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty.rule import bound, order_seen
 from verification.uncertainty.solving import asked_of, solve
@@ -282,30 +274,20 @@ def _drawn(make: Callable[[Draw, int], Scene], seed: tuple[int, ...], number: in
     return with_grid(scene, cells=(cells, cells))
 
 
-def by_problem(rows: DataFrame) -> SmallTable:
-    """A line for each kind of problem."""
-    return _both_rules(rows, rows["problem"].str.rstrip(" 0123456789"), "kind of problem")
-
-
-def by_quantity(rows: DataFrame) -> SmallTable:
-    """A line for each quantity."""
-    return _both_rules(
-        rows, rows["quantity"].replace({each.row: each.words for each in QUANTITIES.values()}), "quantity"
-    )
-
-
-def _both_rules(rows: DataFrame, of: Any, head: str) -> SmallTable:
-    """Of the values that count: how many each rule covers, and how wide it is. of: group of each row."""
-    lines = []
-    for name, own in rows.dropna(subset=["over-error"]).groupby(of, sort=False):
-        cells = [str(own["problem"].nunique()), str(len(own))]
-        for rule in ("uncertainty", "textbook"):
-            ratio = (own[rule] / own["error"]).median()
-            cells += [f"{1e2 * own[f'covered-by-{rule}'].mean():.0f}", f"{ratio:.2g}"]
-        lines.append((name, *cells))
-    columns = f"{head}|problems|values that count|covered [%]|median U/error"
+def both_rules(rows: DataFrame) -> SmallTable:
+    """Of each kind of problem and each quantity: how many values each rule covers, and how wide it is."""
+    lines, known = [], rows.dropna(subset=["over-error"])
+    words = {each.row: each.words for each in QUANTITIES.values()}
+    for of in (known["problem"].str.rstrip(" 0123456789"), known["quantity"].replace(words)):
+        for name, own in known.groupby(of, sort=False):
+            cells = [name, str(own["problem"].nunique()), str(len(own))]
+            for rule in ("uncertainty", "textbook"):
+                ratio = (own[rule] / own["error"]).median()
+                cells += [f"{1e2 * own[f'covered-by-{rule}'].mean():.0f}", f"{ratio:.2g}"]
+            lines.append(cells)
+    columns = "kind of problem, or quantity|problems|values that count|covered [%]|median U/error"
     columns += "|textbook rule: covered [%]|median U/error"
-    return SmallTable(f"Both rules, by {head}", columns.split("|"), lines)
+    return SmallTable("Both rules, by kind of problem and by quantity", columns.split("|"), lines)
 
 
 LEAST = 3  # values of a quantity with a median of its own
