@@ -186,7 +186,6 @@ class TestReadings:
         assert tables[0].rows[0][:4] == ("A roof that falls", "model", "10", "19")
         assert len(tables[0].rows) == len(words.CHANGES)
         assert "10 to 19 of 20 statements hold" in next(iter(self.CASE.notes(found)))
-        assert words.never_together(found) == ([], len(words.READINGS) - 4)
         assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
             words.SAID[0], {"values": (0.8,)}
         )

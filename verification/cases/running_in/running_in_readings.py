@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import combinations, product
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -212,10 +212,6 @@ class RunningInReadings(Readings):
         yield study.runs_table("Runs", {f"{NAMES[case]}, {name}": runs for (case, name), runs in groups})
         yield late_wear(found)
         yield loops(found)
-        never, runs = never_together(found)
-        if never:
-            words = f"Pairs of statements that hold, but never both, on {runs} surfaces and readings"
-            yield SmallTable(words, ("one", "the other"), never)
 
     def notes(self, found: DataFrame) -> Iterator[str]:
         judged, changed = self.judged(found), []
@@ -336,18 +332,6 @@ def loops(found: DataFrame) -> SmallTable:
     columns += "stress|strain, ratio|worn volume, ratio|worn volume of the cycle, ratio|μ, ratio"
     caption = "The loop as printed: what it leaves, and its numbers divided by those of the exact loop"
     return SmallTable(caption, columns.split("|"), rows)
-
-
-def never_together(found: DataFrame) -> tuple[list[tuple[str, str]], int]:
-    """Pairs of SAID of which each held on some surface in some reading, and both nowhere; on how many."""
-    measures = study.measured(found[found["reading"].map(base_of) != FINE], ["reading", "surface"], SAID)
-    held = np.array([[said.holds(value) for value in measures[said.words]] for said in SAID])
-    pairs = [
-        (one.words, other.words)
-        for (i, one), (j, other) in combinations(enumerate(SAID), 2)
-        if held[i].any() and held[j].any() and not (held[i] & held[j]).any()
-    ]
-    return pairs, held.shape[1]
 
 
 CASES = (RunningInReadings("running-in-readings"),)
