@@ -10,7 +10,7 @@ results, where nothing else is said the row of `compare` of that name; of all ru
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -184,14 +184,6 @@ def _of_two_cycles(result: Result) -> tuple[float, float, float, float]:
     return float(peeq[first]), float(peeq[-1]), float(approach[first]), float(approach[second])
 
 
-def _largest_at_nodes(scene: Scene, sam: Result, fem: Result) -> Measured:
-    """Of the three-dimensional model at its nodes, which are few."""
-    if fem.model != FEM_3D:
-        return Measured(sam.quantities["p_max_Pa"], fem.quantities["p_max_Pa"], unit="Pa")
-    one, other, _ = nodal_pressures(sam, fem)
-    return Measured(one.max(), other.max(), unit="Pa")
-
-
 def _patch(scene: Scene, sam: Result, fem: Result) -> Measured:
     """Of a rough patch on the cells that both models have, else at the nodes of FEM with their areas."""
     if scene.patch_surface:
@@ -354,11 +346,13 @@ SLIDING: Mapping[str, Quantity] = {
         for extent in ("depth", "length")
     },
     "decoupled": Quantity(
-        "deviation of the pressure from FEM (L2 at nodes), normal displacement by shear neglected over kept",
+        "deviation of the pressure from FEM (L2 at the nodes): normal displacement by shear neglected, "
+        "divided by the same with it kept",
         whole=partial(_decoupled, distance=lambda sam, fem, _: relative_l2(*nodal_pressures(sam, fem))),
     ),
     "decoupled-hats": Quantity(
-        "deviation of the pressure from FEM (over 0.2 a), normal displacement by shear neglected over kept",
+        "deviation of the pressure from FEM (L2 of means over 0.2 a): normal displacement by shear "
+        "neglected, divided by the same with it kept",
         whole=partial(_decoupled, distance=lambda sam, fem, a: measures.patch_distance(sam, fem, PATCH * a)),
     ),
     **{
@@ -489,7 +483,7 @@ MOVING: Mapping[str, Quantity] = {
 }
 
 QUANTITIES: Mapping[str, Quantity] = {
-    "p-max": replace(_scalar("p_max_Pa", "largest pressure", "Pa"), between=_largest_at_nodes),
+    "p-max": _scalar("p_max_Pa", "largest pressure", "Pa"),
     "p-center": _scalar("p_center_Pa", "pressure in the centre", "Pa"),
     "approach": _scalar("approach_m", "approach", "m"),
     "radius": _scalar("contact_radius_m", "contact radius", "m"),
@@ -537,7 +531,11 @@ QUANTITIES: Mapping[str, Quantity] = {
         "mises_max_change", "change of the largest von Mises stress of the body by the film"
     ),
     "nodal-pressure": Quantity("pressure over the cells or nodes", "Pa", between=_patch),
-    "nodal-p-max": Quantity("largest nodal pressure", "Pa", between=partial(_largest, of=_patch)),
+    "nodal-p-max": Quantity(
+        "largest pressure at the nodes of FEM, to which SAM is averaged",
+        "Pa",
+        between=partial(_largest, of=_patch),
+    ),
     "centroid": Quantity("centre of pressure, in contact radii", between=_centroid),
     "mises-below-film": Quantity(
         "von Mises stress of the body in y = 0, at the interface and the centres of the elements",

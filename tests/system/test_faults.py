@@ -16,6 +16,7 @@ from made_results import of_frame
 
 from samfem import cli
 from verification.cases.robustness import faults as case
+from verification.cases.sweep import tables_of
 from verification.robustness import kills
 from verification.robustness.kills import (
     differences,
@@ -24,6 +25,7 @@ from verification.robustness.kills import (
     killed_solve,
     killed_sweep,
 )
+from verification.rows import case_files
 from verification.runs import files, lock
 from verification.runs.files import FolderError, write_atomically
 from verification.runs.lock import locked
@@ -147,6 +149,8 @@ def test_every_finding_turns_its_gate_red():
     for gate in case.GATES:
         assert red([*every, ("", [(gate, "wrong")])]) == {gate}
     assert red(every[:-1]) == {"missing-kinds"}
+    frame = pd.DataFrame(case.judged({"kills": every}, [])).assign(model="")
+    assert [each.caption for each in tables_of(case_files()["faults"], frame)] == ["kills"]
 
 
 FAKE = """import pathlib, sys, time

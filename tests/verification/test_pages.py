@@ -25,7 +25,7 @@ from verification.suite.pages.answers import (
     pairs_of,
 )
 from verification.suite.pages.site import formula, with_scripts, works
-from verification.suite.pages.stored import GROUPS, PAGES, group_of, read_stored
+from verification.suite.pages.stored import GROUPS, PAGES, group_of, read_stored, share_used
 from verification.suite.readme import renewed
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -190,3 +190,8 @@ def test_failed_gates_are_named_and_counted(results):
     assert "Yes. With the inputs that the paper prints, 17 of its 17 statements" in " ".join(one.split())
     next(case for case in none["cases"] if case["name"] == "pavement")["status"] = "failed"
     assert "have a figure that cannot be read: `pavement`." in " ".join(renewed(README, none).split())
+
+
+def test_a_share_of_one_uses_nothing_of_its_lower_bound():
+    of = [share_used({"metric": "at_least", "tolerance": 0.8, "error": value}) for value in (0.9, 1.0)]
+    assert of == [8 / 9, None]

@@ -303,6 +303,12 @@ def test_what_a_doubtful_reference_says_does_not_count():
     known, unknown = (study.judged(entry, 1.0, doubt=0.3 / each) for each in (3.1, 2.9))
     assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
     assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
+    values = (study.judged(entry, 1.2, doubt=doubt) for doubt in (0.09, 0.11))
+    rows = pd.DataFrame(
+        [{"problem": f"film {k}", "quantity": study.AREA} | each for k, each in enumerate(values)]
+    )
+    told = [each[:5] for each in study.both_rules(rows).rows]
+    assert told == [[name, "1", "1", "100", "1.5"] for name in ("film", "contact area")]
 
 
 def test_medians_are_of_quantities_with_three_values():

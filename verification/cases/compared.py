@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene import Result, Scene, Section
+from sam.scene import Result, Scene, Section, unit_of_key, with_units
 from verification.cases.case import Case, Context, Plot, SmallTable, View
 from verification.cases.recipes import RECIPES, beside, changed
-from verification.cases.sweep import MODELS, differences, framed, points, spelt, tables_of, taken
-from verification.judging import Measured
+from verification.cases.sweep import MODELS, differences, framed, label_of, points, spelt, tables_of, taken
+from verification.compare.measures import nodal_pressures
+from verification.judging import Measured, relative_l2
 from verification.quantities import QUANTITIES, Quantity, Reference, Solved, of_passes
 from verification.references import REFERENCES
 from verification.rows import CaseFile, merged
@@ -101,7 +102,7 @@ class Compared(Case):
         return values
 
     def setup(self, found: Mapping[str, Solved]) -> Iterator[tuple[str, str]]:
-        """The keys of the scene in SI, what the reference says of it, and the discretisation."""
+        """The keys of the scene, what the reference says of it, and the discretisation."""
         yield from self.file.setting
         first = next(iter(found.values()))
         if first.scene is None:
@@ -109,9 +110,9 @@ class Compared(Case):
         scene = first.scene if first.results else first.frame["scene"].iloc[0]
         for name in ("body", "counterbody", "loading", "friction"):
             if (section := getattr(scene, name)) is not None:
-                yield f"{name}, SI", keys_of(section)
+                yield name.capitalize(), keys_of(section)
         if self.file.variants:
-            yield "Solved", "; ".join(self.file.variants[name]["words"] for name in found)
+            yield "Variants", "; ".join(self.file.variants[name]["words"] for name in found)
         if first.reference:
             known = {**first.reference.units, **first.reference.values}
             numbers = (f"{name} = {value:.5g}" for name, value in known.items() if isinstance(value, Real))
@@ -134,7 +135,7 @@ class Compared(Case):
                 yield from (beside(self.file, table, {})(solved.frame) for table in self.file.tables)
                 yield from tables_of(self.file, solved.frame)
             if len(solved.results) > 1:
-                yield _results(words[name], solved.results)
+                yield _results(words[name], self.file, solved)
                 yield from _passes(words[name], solved.results)
         if self.file.allowance:
             named = [QUANTITIES[name] for name in self.file.allowance]
@@ -180,7 +181,7 @@ class Compared(Case):
 
 
 def keys_of(section: Section, above: str = "") -> str:
-    """Keys and values of a table of a scene that are not left at their defaults."""
+    """Keys and values of a table of a scene that are not left at their defaults, numbers with their unit."""
     said = []
     for name in sorted(section.model_fields_set, key=list(type(section).model_fields).index):
         value = getattr(section, name)
@@ -188,7 +189,10 @@ def keys_of(section: Section, above: str = "") -> str:
             said.append(keys_of(value, f"{above}{name}."))
         elif value is not None and value != type(section).model_fields[name].default:
             shown = spelt(value) if isinstance(value, str | float | tuple) else str(value).lower()
-            said.append(f"{above}{name} = {shown}")
+            if unit := unit_of_key(type(section), name):
+                alone = isinstance(value, float)
+                shown = with_units(float(f"{value:.6g}"), unit) if alone else f"{shown} {unit}"
+            said.append(f"{above}{name} = {shown}".replace(" um", " µm"))
     return ", ".join(filter(None, said))
 
 
@@ -219,13 +223,22 @@ def _in_words(results: list[Result]) -> Iterator[tuple[str, list[float]]]:
             yield f"{quantity.words} [{quantity.unit}]" if quantity.unit else quantity.words, values
 
 
-def _results(words: str, results: Mapping[str, Result]) -> SmallTable:
-    """The quantities of every run; of one of each model their difference."""
-    rows = []
+def _results(words: str, file: CaseFile, solved: Solved) -> SmallTable:
+    """The quantities of every run; of one of each model their difference, and beside a decoupled one how far
+    the pressure is off that of FEM, and where it acts.
+    """
+    rows, results = [], solved.results
     for quantity, values in _in_words(list(results.values())):
         apart = [f"{1e2 * (values[0] / values[1] - 1.0):+.2f} %" if all(values) else ""] * (len(values) == 2)
         rows.append((quantity, *(number(value, 5) for value in values), *apart))
-    heads = [name.upper() if name in ("sam", "fem") else name for name in results]
+    if "decoupled" in results:
+        fem, a = results["fem"], solved.reference.units["a"]
+        others = (None if each is fem else nodal_pressures(each, fem) for each in results.values())
+        off = (number(each and 1e2 * relative_l2(*each), 3) for each in others)
+        at = (number(each.quantities["pressure_centroid_x_m"] / a, 3) for each in results.values())
+        rows += [("deviation of the pressure from FEM (L2 at the nodes of FEM) [%]", *off)]
+        rows += [("centre of pressure [a]", *at)]
+    heads = [label_of(file, "run", name) for name in results]
     caption = ", ".join(filter(None, ("Results", words)))
     return SmallTable(caption, ("quantity", *heads, *["difference"] * (len(heads) == 2)), rows)
 

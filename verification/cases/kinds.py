@@ -247,9 +247,6 @@ def _mises_below_film(found: Solved) -> Plot:
     return Plot(drawn, "mises", "Von Mises stress in the plane y = 0", words)
 
 
-TOO_NEAR = "Near the surface, where the strain depends on the mesh, nothing is compared"
-
-
 def _strain_planes(found: Solved) -> Plot:
     """Plastic strain in y = 0 of SAM and the three-dimensional elements, with iso-lines, among them that of
     0.2 %. The maxima are those below the strip in which nothing is compared; what it holds is said beside
@@ -268,31 +265,33 @@ def _strain_planes(found: Solved) -> Plot:
     levels = iso_levels(max(each.value for each in peaks))
     drawing = plane_maps(pair, peaks, levels, strip=SHALLOWEST)
     words = (
-        "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. "
-        f"{TOO_NEAR} (hatched)."
+        "The maps compare the plastic strain in y = 0 by SAM and by FEM; the body is pulled along +x. Near "
+        "the surface, where the strain depends on the mesh, nothing is compared (hatched)."
     )
     return Plot(drawing, "plane", "Plastic strain in the plane y = 0", words)
 
 
+BELOW = f"in the column of the largest strain below {SHALLOWEST:g} a"
 DEEP = 1.4  # radii to which profiles are drawn
 
 
 def _strain_profiles(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
     """Plastic strain over depth of every run, a panel a variant."""
     fields = {name: planes(each) for name, each in found.items()}
-    for name, place in (("axis", "on the axis"), ("column", "where it is largest")):
+    for name, place in (("axis", "on the axis"), ("column", BELOW)):
         panels = {}
         for variant, runs in fields.items():
             x = runs["fem"].place_of_maximum() if name == "column" else 0.0
             panel = panels[f"{file.variants[variant]['words']}, x = {x:.2f} a"] = {}
             for run in ("fem", *(run for run in runs if run != "fem")):
-                label, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
-                if label in LOOKS:
-                    panel[label] = Curve(z[z <= DEEP], PERCENT * runs[run].below(x, z[z <= DEEP]))
+                line, z = run.upper() if run in ("sam", "fem") else f"SAM, {run}", runs[run].z
+                if line in LOOKS:
+                    look, z = {"label": label_of(file, "run", run)}, z[z <= DEEP]
+                    panel[line] = Curve(z, PERCENT * runs[run].below(x, z), look=look)
         drawing = curves(panels, "depth $z/a$", "plastic strain [%]", (0.0, SHALLOWEST))
         text = (
-            "The curves compare the plastic strain in y = 0 at the peak by FEM, SAM and other forms of SAM. "
-            f"{TOO_NEAR} (grey)."
+            "The curves compare the plastic strain over depth in y = 0 at peak load by FEM and by each form "
+            "of SAM in the legend. Nothing is compared in the grey range, where it depends on the mesh."
         )
         yield Plot(drawing, name, f"Plastic strain over depth {place}", text)
 
@@ -451,8 +450,9 @@ def _limits(file: CaseFile, frame: DataFrame, column: str) -> Plot:
 def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | None:
     """`lines Y,Y over X by SERIES in PANEL on AXES at LEVELS`: columns over an axis or a column, each a
     number or an array; what is expected is a line below the marks of what is found. Series and panels are
-    told by one axis or by several, "model,size", and by the column where there are several. on: logarithmic
-    axes; at: levels that are marked. None where no line has two points.
+    told by one axis or by several, "model,size", and by the column where there are several (of one scale if
+    the file has a label "y"). on: logarithmic axes; at: levels that are marked. None where no line has two
+    points.
     """
     said = dict(zip(words[::2], words[1::2], strict=True))
     x, by, panel = said["over"], said.get("by", "model").split(","), said.get("in", "sweep").split(",")
@@ -493,7 +493,7 @@ def _lines(file: CaseFile, frame: DataFrame, ys: str, *words: str) -> Plot | Non
     marks = {file.labels.get("limit", "limit"): ("y", *levels)} if levels else {}
     how = {"logarithmic": said.get("on", ""), "marks": marks, "count": bool(COUNTS.match(at))}
     if len({title for _, title in panels}) == 1:
-        drawing = curves({label: own for (label, _), own in panels.items()}, at, None, **how)
+        drawing = curves({label: own for (label, _), own in panels.items()}, at, file.labels.get("y"), **how)
     elif len(shown) == 1:
         drawing = curves({title: own for (_, title), own in panels.items()}, at, shown[0], **how)
     else:

@@ -247,6 +247,8 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
             shown |= {f"{column} expected": f"{shown[column]}, expected" for column in values}
         known = {c: rows[c].dropna() for c in shown if c in rows}
         shown = {c: shown[c] for c, own in known.items() if len(own) and isinstance(own.iloc[0], str | Real)}
+        if not (sweep or any(known[column].any() for column in shown)):  # of zeros only, the gates tell
+            continue
         modelled = ["model"] * any(rows["model"])
         lines = [
             (
@@ -262,7 +264,9 @@ def tables_of(file: CaseFile, frame: DataFrame) -> Iterator[SmallTable]:
                 cells = (f"order {order.exponent:.2f}" if order else "" for order in orders)
                 lines.append((*[""] * len(axes), model.upper(), *cells))
         heads = (re.sub(r"[._-]", " ", axis) for axis in axes)
-        yield SmallTable(f"Points {name}" if sweep else name, (*heads, *modelled, *shown.values()), lines)
+        yield SmallTable(
+            f"Points {name}" if sweep else name or "Values", (*heads, *modelled, *shown.values()), lines
+        )
 
 
 def _cell(value: Any) -> str:

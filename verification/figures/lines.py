@@ -35,13 +35,8 @@ POINTS = {"SAM": SAM | {"marker": "o", "fillstyle": "none"}, "FEM": FEM | {"mark
 LOOKS = {
     "FEM": {"color": BLACK, "linewidth": 2.0},
     "SAM": {"color": BLUE, "marker": "o", "markersize": 3.5, "fillstyle": "none", "linestyle": "none"},
-    "SAM, decoupled": {
-        "color": VERMILION,
-        "linewidth": 1.3,
-        "linestyle": "--",
-        "label": "SAM, normal displacement by shear neglected",
-    },
-    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":", "label": "SAM, loop of the paper"},
+    "SAM, decoupled": {"color": VERMILION, "linewidth": 1.3, "linestyle": "--"},
+    "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
 }
 """The look of FEM and of each form of SAM, where FEM is the reference."""
 CYCLES = tuple(

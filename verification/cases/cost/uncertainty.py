@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Result, Scene, Status
-from verification.cases.case import FEM, SAM, Context, DataFrame, with_grid, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, SmallTable, with_grid, with_keys, with_loading
 from verification.cases.recipes import at_ratio
 from verification.quantities import QUANTITIES
 from verification.reference.coated_changes import largest_mises
 from verification.reference.hamilton import largest_von_mises
 from verification.references import REFERENCES, coated_contact, contact_of, growing_sphere
+from verification.runs.models import FEM, SAM
 from verification.runs.store import solve_or_reuse
 from verification.uncertainty.rule import bound, order_seen
 from verification.uncertainty.solving import asked_of, solve
@@ -68,16 +69,17 @@ def rows_of(
 
 
 def judged(entry: Mapping[str, Any], truth: float, *, doubt: float) -> dict[str, float]:
-    """Error and uncertainties over the truth, and whether it is covered. doubt: uncertainty of the truth."""
+    """Error and uncertainties over the truth, and whether it is covered; nothing of a value that does not
+    count. doubt: uncertainty of the truth.
+    """
     own, error = entry["u_num"], abs(entry["values"][0] - truth)
-    rules = {"uncertainty": own, "textbook": textbook(entry)}
-    row = {"error": error / abs(truth)} | {name: value / abs(truth) for name, value in rules.items()}
     if doubt > max(own, error) / KNOWN:
-        return row
-    row |= {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
-    # as they are drawn, on logarithmic axes
-    drawn = {f"by-{name}": max(row[name], 1e-9) for name in rules} | {"of-error": max(row["error"], 1e-9)}
-    row |= drawn | {f"by-{name} expected": drawn["of-error"] for name in rules}
+        return {}
+    rules = {"uncertainty": own, "textbook": textbook(entry)}
+    # they are drawn on logarithmic axes
+    drawn = {name: max(value / abs(truth), 1e-9) for name, value in ({"error": error} | rules).items()}
+    row = drawn | {f"covered-by-{name}": float(error <= value) for name, value in rules.items()}
+    row |= {f"{name} expected": drawn["error"] for name in rules}
     return row | {"over-error": own / max(error, 1e-12 * abs(truth))}
 
 
@@ -270,6 +272,22 @@ def _drawn(make: Callable[[Draw, int], Scene], seed: tuple[int, ...], number: in
     scene = make(draw, seed[-1])
     cells = int(draw.integers(40, 50 if scene.body.plasticity else 100))
     return with_grid(scene, cells=(cells, cells))
+
+
+def both_rules(rows: DataFrame) -> SmallTable:
+    """Of each kind of problem and each quantity: how many values each rule covers, and how wide it is."""
+    lines, known = [], rows.dropna(subset=["over-error"])
+    words = {each.row: each.words for each in QUANTITIES.values()}
+    for of in (known["problem"].str.rstrip(" 0123456789"), known["quantity"].replace(words)):
+        for name, own in known.groupby(of, sort=False):
+            cells = [name, str(own["problem"].nunique()), str(len(own))]
+            for rule in ("uncertainty", "textbook"):
+                ratio = (own[rule] / own["error"]).median()
+                cells += [f"{1e2 * own[f'covered-by-{rule}'].mean():.0f}", f"{ratio:.2g}"]
+            lines.append(cells)
+    columns = "kind of problem, or quantity|problems|values that count|covered [%]|median U/error"
+    columns += "|textbook rule: covered [%]|median U/error"
+    return SmallTable("Both rules, by kind of problem and by quantity", columns.split("|"), lines)
 
 
 LEAST = 3  # values of a quantity with a median of its own

@@ -243,15 +243,15 @@ MEASURES: Mapping[str, Callable[[History], float]] = {
 }
 """Of a run of 25 cycles; grown: share of the volume that the last five wear, 0 where nothing has worn."""
 COLUMNS: Mapping[str, Callable[[Run], float]] = {
-    "V, first [µm³]": lambda one: CUBIC * one.history.volume[0],
-    "V, last": lambda one: CUBIC * one.history.volume[-1],
-    "μ, first": lambda one: one.history.friction[0],
-    "μ, last": lambda one: one.history.friction[-1],
-    "Sa, first [nm]": lambda one: 1e9 * one.history.sa[0],
-    "Sa, last": lambda one: 1e9 * one.history.sa[-1],
-    "p_max, first [GPa]": lambda one: GIGA * one.history.p_max[0],
-    "p_max, last": lambda one: GIGA * one.history.p_max[-1],
-    "at rest from cycle": lambda one: at_rest_from(one.of_cycles("new_strain_max")),
+    "V, after cycle 1 [µm³]": lambda one: CUBIC * one.history.volume[0],
+    "V, after the last cycle [µm³]": lambda one: CUBIC * one.history.volume[-1],
+    "μ, cycle 1": lambda one: one.history.friction[0],
+    "μ, last cycle": lambda one: one.history.friction[-1],
+    "Sa, after cycle 1 [nm]": lambda one: 1e9 * one.history.sa[0],
+    "Sa, after the last cycle [nm]": lambda one: 1e9 * one.history.sa[-1],
+    "p_max, cycle 1 [GPa]": lambda one: GIGA * one.history.p_max[0],
+    "p_max, last cycle [GPa]": lambda one: GIGA * one.history.p_max[-1],
+    "no new plastic strain from cycle": lambda one: at_rest_from(one.of_cycles("new_strain_max")),
 }
 """What tables show of runs -> of a run that converged."""
 
@@ -563,13 +563,15 @@ def judged(measures: DataFrame, statements: Sequence[Statement] = STATEMENTS) ->
     return found
 
 
-def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> SmallTable:
-    """Each statement with its verdicts. readings: name of a reading -> what is told of the
-    statements.
+def statements_table(
+    readings: Mapping[str, Sequence[Mapping[str, Any]]], of: str = "the statements on Figures 13 to 17"
+) -> SmallTable:
+    """Each statement with its verdicts. readings: name of a reading -> what is told of the statements; of:
+    what the caption names.
     """
     columns, rows = ["Fig.", "statement of the paper", "measure", "asked"], []
     for name in readings:
-        columns += [f"{name}: median (range)", "holds on", "by the median", "by agreement"]
+        columns += [f"{name}: median (range)", "holds on surfaces", "by the median", "by agreement"]
     for said in zip(*readings.values(), strict=True):
         row = [said[0][key] for key in ("figure", "statement", "measure", "asked")]
         for one in said:
@@ -578,8 +580,8 @@ def statements_table(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> Sma
             row += [one["by_median"], one["by_agreement"]]
         rows.append(row)
     return SmallTable(
-        "What the paper says of its Figures 13 to 17, on surfaces of our own, by their median and by "
-        f"agreement of {AGREED:.0%} of them. None: surfaces without a value",
+        f"Verdicts: {of}, by the median of the surfaces and by agreement of {100 * AGREED:.0f} % of them. "
+        "“none on 2”: on two surfaces the statement has no value",
         columns,
         rows,
     )
@@ -599,23 +601,22 @@ def readings_of(
 
 
 def together(readings: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[SmallTable]:
-    """Under how many readings each statement holds by agreement, and which hold together under each."""
+    """Under how many readings each statement holds by the median, and which hold together under each."""
     numbered, under = list(enumerate(zip(*readings.values(), strict=True), start=1)), []
     for number, said in numbered:
-        verdicts = [one["by_agreement"] for one in said]
+        verdicts = [one["by_median"] for one in said]
         words = [said[0][key] for key in ("figure", "statement", "measure", "asked")]
         under.append((str(number), *words, *(str(verdicts.count(each)) for each in (HELD, FAILED, OPEN))))
     hold = []
     for name, said in readings.items():
         places = [
-            [str(k) for k, one in enumerate(said, start=1) if one["by_agreement"] == verdict]
+            [str(k) for k, one in enumerate(said, start=1) if one["by_median"] == verdict]
             for verdict in (HELD, OPEN)
         ]
         hold.append((name, str(len(places[0])), *map(", ".join, places)))
     columns = ("no.", "Fig.", "statement of the paper", "measure", "asked", HELD, FAILED, OPEN)
+    by, heads = "(by the median of the surfaces)", ("reading", "how many", "numbers", f"{OPEN}: numbers")
     return [
-        SmallTable(f"Under how many of {len(readings)} readings a statement holds", columns, under),
-        SmallTable(
-            "Which statements hold together", ("reading", "how many", "numbers", f"{OPEN}: numbers"), hold
-        ),
+        SmallTable(f"Under how many of {len(readings)} readings a statement holds {by}", columns, under),
+        SmallTable(f"Which statements hold together {by}", heads, hold),
     ]

@@ -110,7 +110,7 @@ def case_view(each: ShownCase, look: Look) -> dict:
         "status": str(RowStatus.FAILED if each.failed else RowStatus.PASSED),
         "gates": sorted(each.gates, key=lambda gate: (gate["status"] not in RED, -(share_used(gate) or 0.0))),
         "red": len(each.red),
-        "tightest": f"{max(tight)[1]} ({100 * max(tight)[0]:.0f} % used)" if tight else "",
+        "tightest": f"{max(tight)[1]} ({100 * max(tight)[0]:.0f} % of the tolerance used)" if tight else "",
         "figures": [figure_view(figure, look) for figure in case["figures"]],
         "scenes": [(name, look.to(f"verification/scenes/{name}")) for name in each.inputs],
         "runs": [run for run in case["runs"] if (look.folder / run / SUMMARY).is_file()],

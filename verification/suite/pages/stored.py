@@ -126,11 +126,14 @@ def page_of(case: str) -> str:
 
 
 def share_used(gate: Mapping) -> float | None:
-    """The share of the tolerance that a gate uses, None where it has no such number."""
-    if not gate["error"] or not gate["tolerance"]:
+    """The share of the tolerance that a gate uses, None where it has no such number, or has a share of one,
+    which cannot be larger.
+    """
+    lower = LIMITS.get(gate["metric"]) == ">="
+    if not gate["error"] or not gate["tolerance"] or (lower and gate["error"] == 1.0):
         return None
     share = gate["error"] / gate["tolerance"]
-    return 1.0 / share if LIMITS.get(gate["metric"]) == ">=" else share
+    return 1.0 / share if lower else share
 
 
 def read_stored(results: Mapping, stale: Mapping[str, str] | None = None) -> Stored:
