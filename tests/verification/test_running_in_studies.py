@@ -240,7 +240,7 @@ class TestCampaign:
         assert case.measure(after)["campaign"].value == pytest.approx(0.03, rel=1e-4)
         assert study.solved_of(after).index.tolist() == [list(wanted).index((one, A, 2))]
 
-    @pytest.mark.parametrize(("name", "again"), [("running-in-physics", 24), ("running-in-sensitivity", 10)])
+    @pytest.mark.parametrize(("name", "again"), [("running-in-physics", 24), ("running-in-sensitivity", 5)])
     def test_a_study_of_a_campaign_has_all_rows_tables_and_notes(self, name, again, tmp_path, monkeypatch):
         case, solved = all_cases()[name], []
         own = context(name, tmp_path, level="full")

@@ -9,9 +9,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sam.scene import Coating, CounterBody, CounterSurface, Friction, Grid, Loading, Path, Plasticity, Scene
-from sam.scene.section import unit_of_key
-from sam.scene.units import in_unit
+from sam.scene import (
+    Coating,
+    CounterBody,
+    CounterSurface,
+    Friction,
+    Grid,
+    Loading,
+    Path,
+    Plasticity,
+    Scene,
+    in_unit,
+    unit_of_key,
+)
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
 from verification.quantities import modulus_of
 from verification.reference.coated_sphere import CoatedContact
