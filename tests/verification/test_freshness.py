@@ -59,6 +59,7 @@ def test_what_was_published_is_named_where_it_cannot_run(report, monkeypatch):
 def test_other_code_another_scene_other_gates_and_a_case_that_broke_off_are_named(report, samfem):
     for key, value, why in (
         ("code", "f" * 64, "the code that it depends on has changed"),
+        ("file", "f" * 64, "its case file has changed"),
         ("inputs", {SCENE: "f" * 64}, f"{SCENE} changed"),
         ("failure", "RuntimeError: no", "it broke off"),
     ):
@@ -67,6 +68,15 @@ def test_other_code_another_scene_other_gates_and_a_case_that_broke_off_are_name
         assert said_of(samfem, changed) == f"{CASE}: {why}"
     next(gate for gate in report["gates"] if gate["case"] == CASE)["tolerance"] *= 2.0
     assert said_of(samfem, report) == f"{CASE}: its gates have changed"
+
+
+def test_a_case_file_counts_but_for_its_rows():
+    case = all_cases()[CASE]
+    own = [
+        outcomes.file_digest(replace(case, file=case.file.model_copy(update=changed)))
+        for changed in ({}, {"claims": ()}, {"vary": {"resolution": [9, 9]}})
+    ]
+    assert own[0] == own[1] != own[2]
 
 
 def test_a_report_of_all_that_is_asked_is_not_stale(report, samfem, monkeypatch):

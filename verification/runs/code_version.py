@@ -38,7 +38,7 @@ PACKAGES = {
 OF_CASES = ("sam", "fem_reference", "verification", "samfem")
 NOT_OF_CASES = (*("verification/suite", "verification/scenes"), "verification/runs/code_version.py")
 """What decides the outcome of a verification case, but for what only words it: rows are judged anew from
-stored numbers, scenes and case files count by what a case reads of them.
+stored numbers, scenes and case files count by their content, case by case.
 """
 CASE_FILES = "verification/cases"
 PACKAGES_OF_CASES = (*PACKAGES[FEM_3D], "matplotlib", "meshio", "pydantic", "pyvista", "vtk")

@@ -2,8 +2,9 @@
 """Which cases of a published report are older than the code in front of the reader, and why; and which of an
 earlier report stay in a new one, word for word and byte for byte: those that do not run again.
 
-results.json says of each case by which code it was made (`code`, a digest of the files that it depends on)
-and of which scenes (`inputs`, their SHA-256). Documentation and what only words a page do not count.
+results.json says of each case by which code it was made (`code`, a digest of the files that it depends on),
+by which case file (`file`, its digest but for the rows) and of which scenes (`inputs`, their SHA-256).
+Documentation and what only words a page do not count.
 """
 
 import hashlib
@@ -15,7 +16,7 @@ from verification.cases import all_cases
 from verification.judging import Measured, Row, RowStatus, judge
 from verification.rows import load_rows
 from verification.runs.code_version import version_of_cases
-from verification.suite.outcomes import present
+from verification.suite.outcomes import file_digest, present
 
 Record = Mapping[str, Any]
 JUDGED_BY = ("metric", "tolerance", "quantity", "reason")
@@ -57,6 +58,8 @@ def of_other_code(name: str, results: Mapping) -> str:
         return "it broke off"
     if case.get("code") != version_of_cases():
         return "the code that it depends on has changed"
+    if case.get("file") != file_digest(all_cases().get(name)):
+        return "its case file has changed"
     changed = [scene for scene, digest in case["inputs"].items() if digest != _digest(scene)]
     return f"{', '.join(changed)} changed" if changed else ""
 

@@ -2,11 +2,12 @@
 """The outcome of a whole verification case in the store, with its figures and runs as files.
 
 A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what
-it drew is written again byte for byte. Only a case that came to its end is kept. Its scenes count
-by content, everything else by the version of the code that it depends on.
+it drew is written again byte for byte. Only a case that came to its end is kept. Its scenes and its
+file, but for the rows, count by content, everything else by the version of the code that it depends on.
 """
 
 import gzip
+import hashlib
 from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
@@ -74,7 +75,14 @@ def keep(store: Store, case: Case, context: Context, outcome: Outcome, *, second
 
 
 def _identity(case: Case, level: str) -> dict:
-    return {"kind": OUTCOME, "case": case.name, "level": level}
+    return {"kind": OUTCOME, "case": case.name, "level": level, "file": file_digest(case)}
+
+
+def file_digest(case: Case | None) -> str:
+    """Digest of what the file of a case says beside its rows, empty without one."""
+    if case is None or case.file is None:
+        return ""
+    return hashlib.sha256(case.file.model_dump_json(exclude={"path", "claims"}).encode()).hexdigest()
 
 
 def present(name: str) -> bytes | None:

@@ -360,6 +360,7 @@ def _case_record(case: Case, ran: RanCase | None, verdicts: Sequence[Verdict]) -
         "seconds": ran.seconds if ran else None,
         "reused": asdict(ran.source) if reused else None,
         "code": version_of_cases() if ran else "",
+        "file": outcomes.file_digest(case) if ran else "",
         "inputs": dict(sorted(provenance.hashes(ran.context.inputs).items())) if ran else {},
         "runs": ran.context.runs if ran else [],
         "sources": _sources(ran.context) if ran else {},
