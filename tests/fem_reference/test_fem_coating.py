@@ -58,14 +58,6 @@ def test_layered_point_force_is_reciprocal():
 # --- contacts ---
 
 
-def test_a_coating_of_the_body_changes_nothing():
-    """To rounding on its own mesh."""
-    q = fem_reference.solve(scene(0.1, 1.0)).quantities
-    assert abs(q["p_max_change"]) < 1e-11 and abs(q["mises_max_change"]) < 1e-11
-    bare = fem_reference.solve(scene(bare=True)).quantities
-    assert bare["p_max_change"] is None and bare["mises_max_film_Pa"] is None
-
-
 def test_record():
     """All names and columns, the largest von Mises stress of coating and body, what is left out."""
     result = fem_reference.solve(scene(0.5, cells=6, loading={"unload": True}))

@@ -96,14 +96,6 @@ def test_reverse_yielding_is_found_and_unloaded_in_steps():
     assert max(step.state.residual for step in steps) < 1e-9
 
 
-def test_weak_steps_finish_by_cutting():
-    """Perfect plasticity in one load step: Newton fails, the step is halved, and the cuts are counted."""
-    result = fem_reference.solve(scene("perfect", steps=1))
-    assert result.status is Status.CONVERGED and result.cost["step_cuts"] >= 1
-    assert result.quantities["force_N"] == pytest.approx(hertz_force(4e9), rel=1e-9)
-    assert result.tables["history"]["iterations"][0] == result.cost["newton_iterations"] - 1
-
-
 def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
     """A whole step begins with nodes scaled with the force, its halves with those that touch."""
     model, steps = loaded(cells=4, steps=3)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The plane-strain model: line forces, full slip, yield, passes; what it
-refuses.
-"""
+"""The plane-strain model: line forces, full slip, passes; what it refuses."""
 
 import numpy as np
 import pytest
@@ -47,26 +45,20 @@ def test_line_force_stress():
     """The strain of the displacements gives the one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r);
     what line forces displace is zero at the datum.
     """
-    body, (down, along), step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
+    body, force, step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
     r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
     at = np.stack([r * np.sin(t), r * np.cos(t)])
-    slopes = [
-        (
-            flamant((down, along), body, at + shift[:, None], 5.0)
-            - flamant((down, along), body, at - shift[:, None], 5.0)
-        )
-        / (2 * step)
-        for shift in step * np.eye(2)
-    ]
+    ends = [[flamant(force, body, at + s[:, None], 5.0) for s in (way, -way)] for way in step * np.eye(2)]
+    slopes = [(after - before) / (2 * step) for after, before in ends]
     strain = np.stack([slopes[0][0], np.zeros(4), slopes[1][1], slopes[0][1] + slopes[1][0]])
     xx, yy, zz, xz = stiffness_tensor(3.0, 0.3) @ strain
-    radial = -2.0 * (down * np.cos(t) + along * np.sin(t)) / (np.pi * r)
+    radial = -2.0 * (force[0] * np.cos(t) + force[1] * np.sin(t)) / (np.pi * r)
     expected = radial * np.array([np.sin(t) ** 2, np.cos(t) ** 2, np.sin(t) * np.cos(t)])
     np.testing.assert_allclose([xx, zz, xz], expected, atol=1e-8)
     np.testing.assert_allclose(yy, 0.3 * radial, atol=1e-8)
     edge = np.array([[5.0, -5.0], [0.0, 0.0]])
-    assert np.abs(flamant((down, 0.0), body, edge, 5.0)[1]).max() < 1e-15
-    assert np.abs(flamant((0.0, along), body, edge, 5.0)[0]).max() < 1e-15
+    assert np.abs(flamant((2.0, 0.0), body, edge, 5.0)[1]).max() < 1e-15
+    assert np.abs(flamant((0.0, -0.7), body, edge, 5.0)[0]).max() < 1e-15
 
 
 def test_strain_far_away():
@@ -123,21 +115,6 @@ def test_full_slip_is_askew():
     assert wide * np.sqrt(1.0 - 4.0 * k**2) == pytest.approx(1.0, rel=5e-3)
     assert 0.5 * (start + end) / wide == pytest.approx(-2.0 * k, rel=0.03)
     assert model.centroid(state) / wide == pytest.approx(-8.0 / 3.0 * k, rel=5e-3)
-
-
-def test_flow_does_not_lock():
-    """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
-    rises towards it; the volume changes elastically alone.
-    """
-    model, steps = load_steps(line(6.0, cells=3, plasticity=PERFECT, steps=6))
-    mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
-    mean = [force / model.size(step.state) for force, step in zip(mean, steps, strict=True)]
-    assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
-    state = steps[-1].state
-    volume = model.body.strain(state.u)[:3].sum(axis=0)
-    bulk = model.stress(state)[:3].sum(axis=0) * (1.0 - 2.0 * 0.3) / (1.0 - 0.3**2)
-    np.testing.assert_allclose(volume, bulk, atol=1e-9)
-    assert np.abs(state.history.plastic_strain[:3].sum(axis=0)).max() < 1e-9
 
 
 def test_far_field_of_plastic_strain():
