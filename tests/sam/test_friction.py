@@ -111,24 +111,15 @@ def test_equal_to_a_direct_solution(coupling):
 
 
 @pytest.mark.parametrize(
-    ("coefficient", "options", "left_out"),
-    [
-        (0.0, {}, "tangential kernels"),
-        (0.4, {"counterbody": STEEL}, "coupling"),
-        (0.4, {"friction": {"coupling": False}}, "coupling"),
-    ],
+    ("coefficient", "options"),
+    [(0.0, {}), (0.4, {"counterbody": STEEL}), (0.4, {"friction": {"coupling": False}})],
 )
-def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(coefficient, options, left_out):
-    """No kernel for the contact, the pressure bit for bit; the stress feels a traction."""
+def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(coefficient, options):
+    """The pressure bit for bit; the stress feels a traction."""
     without = {key: value for key, value in options.items() if key != "friction"}
     plain, sliding = sam.solve(scene(None, **without)), sam.solve(scene(coefficient, **options))
-    assert sliding.left_out[0].stage == left_out and plain.discretisation["tangential_kernels"] == 0
     assert np.array_equal(line(plain, "p_Pa"), line(sliding, "p_Pa"))
     assert (sliding.quantities == plain.quantities) is (coefficient == 0.0)
-    assert sliding.cost["displacement_applications"] == plain.cost["displacement_applications"]
-    counters = Counters()
-    sam.plan(scene(coefficient, **options)).problem(counters).contact(Load(0.65))
-    assert counters.tangential_kernels == 0
 
 
 def test_alternating_traction_mirrors_the_even_cycles():

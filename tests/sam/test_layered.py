@@ -372,12 +372,9 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
 )
 def test_yielding_is_refused_by_name(body, key):
     film = {"young": 80e9, "poisson": 0.3, "thickness": 1e-6} | body.pop("coating", {})
-    a_scene = small_scene(body={"coating": film, **body})
-    for function in (sam.check, sam.solve):
-        with pytest.raises(
-            sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"
-        ):
-            function(a_scene)
+    words = key + ".*allows an elastic coating on an elastic body"
+    with pytest.raises(sam.UnsupportedScene, match=words):
+        sam.solve(small_scene(body={"coating": film, **body}))
 
 
 def test_depths_hold_the_film_the_interface_and_what_is_below():
