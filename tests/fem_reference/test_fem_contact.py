@@ -10,7 +10,7 @@ from builders import RADIUS, SWIFT, scene as small_scene
 from scipy.sparse.linalg import aslinearoperator
 
 import fem_reference
-import fem_reference.spatial
+from fem_reference import spatial
 from fem_reference.axisymmetric import problem as plane
 from fem_reference.axisymmetric.model import axis_pressure, build
 from fem_reference.axisymmetric.planner import plan
@@ -159,14 +159,7 @@ def test_an_elastic_iteration_has_factors_of_its_own():
     ("model", "keys", "new_each_time", "count", "within", "also"),
     [
         (fem_reference, {}, (plane, "FEW", 1), "factorizations", 1e-8, "contact_radius_m"),
-        (
-            fem_reference.spatial,
-            IN_SPACE,
-            (problem, "SLOWER", 0),
-            "multigrid_setups",
-            1e-7,
-            "pressure_centroid_x_m",
-        ),
+        (spatial, IN_SPACE, (problem, "SLOWER", 0), "multigrid_setups", 1e-7, "pressure_centroid_x_m"),
     ],
     ids=["factors", "hierarchies"],
 )

@@ -332,12 +332,10 @@ counterbody.surface = {kind = 'file', path = 'map.csv'}; grid.extent = ['48 um',
     -> counterbody.surface.path & cells of 2e-06 m x 1e-06 m, as those of the body; it has 1e-06 m x 1e-06 m
 counterbody.surface.cutoff_short = '1.5 um' -> grid.cells & in the shortest wavelength
 ## KINEMATIC body.plasticity.kinematic.
-modulus = [] | '1 GPa' -> = & $LIST
 modulus = ['1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa'] \
     -> @modulus = ["1 GPa", " & $LIST
 modulus = ['1 GPa', '2 um'] | ['1 GPa', '-2 GPa'] | ['1 GPa', '2'] | ['1 GPa', true] \
     -> @modulus[1] & a pressure as a string
-recovery = [300] -> = & as many numbers as modulus has: 2
 recovery = 300 | [] -> = & $LIST
 recovery = [-1, 0] | ['1', 0] | [nan, 0] | [100000000.0, 0] | [[300, 0], 1] -> @recovery[0] & $RECOVERY
 """

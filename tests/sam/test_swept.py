@@ -42,7 +42,7 @@ def test_swept_stress_is_that_of_the_matrices(faces, n, error, nu, kind):
 @pytest.mark.parametrize("error", [0.5, 1e-3])
 @pytest.mark.parametrize("faces", [EVEN, GRADED, TWO], ids=["even", "graded", "two"])
 def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
-    """Less than log(8/error)/pi cells apart, or from the mirror image of the first; equal ones are one run."""
+    """Less than log(8/error)/pi cells apart, or from the mirror image of the first; equal ones are a run."""
     reach, (runs, top) = np.log(8 / error) / np.pi, neighbours(faces, error)
     layers = range(len(faces) - 1)
     found = [(i, i + d) for run in runs for i in layers[run.first :][: run.count] for d in sorted(run.keys)]
