@@ -35,17 +35,13 @@ settings.load_profile("fixed")
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Processes for `pytest -n auto`: the cores that this process may use, which can be fewer than the
-    machine has.
-    """
+    """Processes for `pytest -n auto`: the cores that this process may use, maybe fewer than there are."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @pytest.fixture(scope="session", autouse=True)
 def meshes_once():
-    """Each mesh of a run is read by a process of its own once: that takes half a second, and tests draw the
-    same.
-    """
+    """Each mesh of a run is read by a process of its own once: that takes half a second."""
     found, read = {}, meshes.read_apart
 
     def once(reader, path, *more, **how):

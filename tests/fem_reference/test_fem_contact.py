@@ -164,9 +164,7 @@ def test_an_elastic_iteration_has_factors_of_its_own():
     ids=["factors", "hierarchies"],
 )
 def test_what_is_kept_changes_no_result(monkeypatch, model, keys, new_each_time, count, within, also):
-    """Equal to what new factors, or a new hierarchy, in every iteration give, within equilibrium. About
-    two set-ups a step; the others are solved in some ten iterations with what is kept.
-    """
+    """Equal to what new factors, or a new hierarchy, in every iteration give; about two set-ups a step."""
     kept = model.solve(yielding(**keys))
     assert STEPS <= kept.cost[count] <= 3 * STEPS < kept.cost["newton_iterations"] <= 8 * STEPS
     assert 0 < kept.cost["linear_iterations"] <= 20 * kept.cost["newton_iterations"]

@@ -61,9 +61,7 @@ def test_a_depth_profile_acts_at_each_point():
 
 @pytest.mark.parametrize("thickness", [0.28, 0.32])
 def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch, thickness):
-    """Both ends of a weak layer lie in one row of elements 1/8 high. The largest strain is that of points,
-    of no parabola through the kink there.
-    """
+    """Both ends of a weak layer lie in one row of elements 1/8 high; no parabola goes across the kink."""
     a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * 210e9 / 0.91)
     layer = {"B": 9450e6, "profile": [[thickness * a, 0.1], [1.5 * thickness * a, 1.0]]}
     monkeypatch.setitem(LAWS, "swift", SWIFT | layer)

@@ -39,9 +39,7 @@ def line(ratio=1.0, *, cells=8, box=None, friction=0.0, plasticity=None, path=No
 
 
 def test_line_force_stress():
-    """The strain of the displacements gives the one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r);
-    what line forces displace is zero at the datum.
-    """
+    """The one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r); no displacement at the datum."""
     body, force, step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
     r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
     at = np.stack([r * np.sin(t), r * np.cos(t)])
@@ -103,9 +101,7 @@ def test_full_slip_is_askew():
 
 
 def test_far_field_of_plastic_strain():
-    """The residual stresses do not depend on the box: across every line x = const those along x, of a
-    symmetric section, have no resultant, and the largest is the same with half of the box.
-    """
+    """Residual stresses do not depend on the box, and those along x have no resultant on a line x = const."""
     found = []
     for box in (12.0, 24.0):
         model, steps = load_steps(line(3.0, cells=4, box=box, plasticity=PERFECT, steps=2, unload=True))
@@ -119,9 +115,7 @@ def test_far_field_of_plastic_strain():
 
 
 def test_rolling_leaves_a_track():
-    """A rolling cylinder: passes add less and less to a body with back-stresses; a result resumed after any
-    step is equal; nothing is left of an elastic body, whose contact moves with the apex.
-    """
+    """Passes add less and less; a resumed result is equal; an elastic contact moves with the apex."""
     rolls = line(2.1, cells=4, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
     kept = []
     result = solve(rolls, checkpoint=kept.append)

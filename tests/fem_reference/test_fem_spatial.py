@@ -229,9 +229,7 @@ def test_the_steps_are_those_of_sam(turns, back):
 
 
 def test_resumed_passes_are_equal_and_hold_what_results_read():
-    """Two passes, resumed inside the second one: equal to the last digit. Of the states inside a pass only
-    those that a step begins from have displacements; the history is that of all states.
-    """
+    """Of the states inside a pass only those that a step begins from have displacements."""
     made, records = moving(0.4, 1, unload=True, cycles=2, steps=1, box=3.0), []
     whole = spatial.solve(made, checkpoint=records.append)
     equal_tables(

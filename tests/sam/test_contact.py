@@ -364,11 +364,7 @@ BY_BOTH = pytest.mark.parametrize("short", [0, 10**4], ids=["transforms", "produ
 @pytest.mark.parametrize("between", [False, True])
 @pytest.mark.parametrize("n, half", [(1, 3), (6, 6), (9, 6), (40, 45)])
 def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
-    """Along both axes, with fewer and with more values than are taken.
-
-    1e-13: the sums that it is held against turn by up to 40 pi, so a term has 126 roundings, and 40 terms are
-    added.
-    """
+    """1e-13: the sums beside it turn by up to 40 pi, 126 roundings a term, and add 40 terms."""
     monkeypatch.setattr(convolution, "SHORT", short)
     kept = np.random.default_rng(n).standard_normal((2, n, n))
     if odd and not between:
@@ -384,10 +380,8 @@ def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
 @pytest.mark.parametrize("odd", [False, True])
 @pytest.mark.parametrize("n", [1, 2, 9, 10])
 def test_back_is_the_inverse(monkeypatch, odd, n, short):
-    """Of a row of n cells from its middle outward, but for what an odd one has in the middle cell.
-
-    Two sums, of the values and of their transforms, neither larger than twice the sum of the moduli. Single
-    precision stays single.
+    """From the middle of a row outward, but for what an odd one has there. Two sums, of the values and of
+    their transforms, neither larger than twice the sum of the moduli.
     """
     monkeypatch.setattr(convolution, "SHORT", short)
     half, kept, between = half_length(n) + 3, n - n // 2, n % 2 == 0

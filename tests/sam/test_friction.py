@@ -135,10 +135,7 @@ def test_alternating_traction_mirrors_the_even_cycles():
 
 
 def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_their_share():
-    """The normal displacement of a body by the traction, less its share of that of the contact.
-
-    Those of both bodies add up to that of the contact, and the shares to 1: what is beyond is one number.
-    """
+    """By the traction: those of both add up to that of the contact, their shares to 1."""
     found = []
     for body, counterbody in ((STEEL, ALUMINIUM), (ALUMINIUM, STEEL)):
         pair = small_scene(body=body, counterbody=counterbody, friction=0.4, grid={"cells": (21, 21)})

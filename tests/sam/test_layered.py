@@ -140,11 +140,9 @@ MATERIALS = pytest.mark.parametrize(
 
 
 def waves(cell, lags, decay):
-    """Wave vectors in polar panels (units 1/h) and the weights of each lag: k, phi, (lags, k, phi) complex
-    weights.
+    """Wave vectors in polar panels (units 1/h) and weights of each lag: k, phi, (lags, k, phi) complex.
 
-    Gauss-Legendre in k up to 34/decay, where e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves
-    k r.
+    Gauss-Legendre up to k = 34/decay, e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves k r.
     """
     top, reach = 34 / decay, max(np.hypot((i + 1) * cell[0], (j + 1) * cell[1]) for i, j in lags)
     t, w = np.polynomial.legendre.leggauss(16)
@@ -247,11 +245,7 @@ def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
     "over, factors", [(1.0, (0.6464, 0.2914, 0.0809, 0.0189)), (2.0, (0.9106, 0.6437, 0.2449, 0.0666))]
 )
 def test_published_stress_under_a_disc(over, factors):
-    """sigma_33/p at the interface on the axis of a disc of radius `over` thicknesses, nu = 1/2, E1/E2 = 1 ...
-    1000.
-
-    Two-layer pavement (Fox 1948, after Burmister 1945): to the last digit of the tables.
-    """
+    """sigma_33/p at the interface on the axis, nu = 1/2: tables of Fox (1948), after Burmister (1945)."""
     for ratio, factor in zip((1, 10, 100, 1000), factors, strict=True):
         samples = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), wave_numbers()).stress(1.0)[0][0, :1]
         disc = radial_values(RadialTable(samples, 0, 1.0), np.array([over]), "disc")  # int_0^over g r dr

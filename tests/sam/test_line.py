@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line contact: coefficients of plane strain against quadrature, images, and balance of forces; a
-cylinder against the closed form of full slip, and itself on other grids.
-"""
+"""A line contact: coefficients of plane strain, images, balance of forces, and a cylinder in full slip."""
 
 from itertools import pairwise
 
@@ -77,9 +75,7 @@ def test_strain_moves_the_surface_as_its_work_on_a_line_force_says(component):
 
 
 def test_residual_stress_of_a_section_balances_and_strain_along_the_line_acts_as_its_poisson_effect():
-    """No force crosses a vertical cut (inside and outside of the section), no traction the surface; e_yy is
-    nu (e_xx + e_zz) in the plane, and adds -E e_yy to the stress along y.
-    """
+    """No force crosses a vertical cut, no traction the surface; e_yy adds its Poisson effect and -E e_yy along y."""
     cuboids = Cuboids(LINE, (0.5, 2.0), NU)
     parts = [between(0.0, 0.5), between(0.5, 2.0)] + [between(2.0**k, 2.0 ** (k + 1)) for k in range(1, 14)]
     z, w = (np.concatenate(each) for each in zip(*parts, strict=True))

@@ -27,9 +27,7 @@ from sam.tribofilm.state import FilmOnCells, bins_of_visits
 
 
 def test_steps_are_counted_in_radii_of_hertz():
-    """a = (3 F R/(4 E*))^(1/3) = 6.053 um for this sphere: 18 um in steps of a/4 are 11.89, so 12.
-    Of a punch it is the radius, of a rounded one that of the flat end.
-    """
+    """a = (3 F R/(4 E*))^(1/3) = 6.053 um: 18 um in steps of a/4 are 11.89: 12. Of a punch its flat end."""
     path = PATH.replace("steps = 4", "step_per_radius = 4")
     assert parsed(add=path).strokes.count == 12
     assert parsed(('force = "0.65 N"', 'approach = "0.349 um"'), add=path).strokes.count == 12  # a^2/R

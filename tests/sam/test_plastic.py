@@ -39,9 +39,8 @@ def swift4():
 
 
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
-    """Table against the law: where the axis yielded and does so at the peak, each point of a cell has its
-    yield stress; the mean of their stresses is within that of their mean strain, by less than 0.2 %. A budget
-    of work: a counter, not seconds (measured 25).
+    """Each point of a cell has its yield stress; the mean of their stresses is within that of their mean
+    strain, by less than 0.2 %. A budget of work: a counter, not seconds (measured 25).
     """
     assert swift4.status is Status.CONVERGED and swift4.cost["operator_applications"] <= 32
     axis = {name: np.asarray(column) for name, column in swift4.tables["axis"].items()}
@@ -63,9 +62,7 @@ def test_the_body_is_of_cells_of_the_grid(swift4):
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
-    """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for
-    bit.
-    """
+    """First yield is at 1.6128: no operator is built, and the answer is the elastic one bit for bit."""
     a_scene = yielding(1.5, grid=FEW)
     result = sam.solve(a_scene)
     assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
@@ -107,9 +104,7 @@ def test_unloading_in_steps_takes_equal_parts_of_the_force():
 
 @pytest.mark.parametrize("stop", ["stress", "strain"])
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
-    """One load step leaves the stress inside the yield surface, and a flow-rule residual of percents. Below
-    yield, at p0 = Y, the loops end at once without a strain.
-    """
+    """One load step leaves a flow-rule residual of percents. Below yield the loops end without a strain."""
     solver = {"method": "paper", "stop": stop, "tolerance": 1e-4}
     given = yielding(4, loading={"unload": False}, grid=SMALL, solver=solver)
     wrong = sam.solve(given)
@@ -238,9 +233,7 @@ def rough(plasticity=RUN_IN_STEEL, force=0.12, depths=None, **tables) -> Scene:
 
 
 def test_the_layers_below_a_rough_body_go_as_deep_as_a_point_load_yields():
-    """Deeper with the load, at the same layers above, with faces at the kinks of the yield stress, and not
-    beyond half of the patch.
-    """
+    """With faces at the kinks of the yield stress, and not beyond half of the patch."""
     profile = ((0.0, 0.6), (0.3e-6, 1.0), (5e-6, 1.0))
     layered = RUN_IN_STEEL | {"profile": profile, "layer_thickness": 0.5e-6, "layer": LINEAR}
     small, large, endless = (choose_grid(rough(layered, force)).faces for force in (0.06, 0.24, 1e3))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A material point in the return maps of both models: closed forms, energies of a step, layers of other laws.
 
-With constant yield stress Y and S = C/g a loop of strain with the plastic amplitude e has the stress
-amplitude Y + sum S tanh(g e) (+ C e for g = 0).
+With yield stress Y and S = C/g a loop of plastic amplitude e has that of stress Y + sum S tanh(g e).
 """
 
 from __future__ import annotations

@@ -37,9 +37,7 @@ def seen(monkeypatch) -> list:
 
 
 def test_a_limit_out_of_reach_is_no_wear():
-    """Plain cyclic contact: a limit that is never reached leaves what none does, bit by bit; a later cycle
-    adds little of the first, as Swift steel hardens.
-    """
+    """Bit by bit; a later cycle adds little of the first, as Swift steel hardens."""
     none, high = (sam.solve(running_in(counterbody=STEEL, wear=wear)) for wear in (None, 999.0))
     assert none.tables["cycles"]["wear_volume_m3"] == [0.0] * 2
     cycles = high.tables["cycles"]
@@ -60,9 +58,7 @@ def test_a_limit_out_of_reach_is_no_wear():
 
 @pytest.mark.parametrize("fills", [False, True])
 def test_the_wear_of_a_cycle_is_the_sum_of_its_parts(fills):
-    """Below a layer that never wears: without a filter what is under the roof, and the roof; all is gone that
-    is beyond its limit. The filter as printed keeps that volume, and raises the surface.
-    """
+    """Below a layer that never wears: under the roof, and the roof. The printed filter keeps that volume."""
     wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
     wear |= {"smoothing_window": 5 * fills, "smoothing_fills": fills, "roof": "falls"}
     steel = SWIFT | {"layer_thickness": 0.2e-6, "layer": SWIFT}
@@ -101,9 +97,7 @@ def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_le
 
 
 def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(seen):
-    """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
-    without friction, though unlike bodies were coupled by the traction where it had failed.
-    """
+    """With low = 0 the contact is that without friction, though the traction of unlike bodies coupled it."""
     sam.solve(running_in(film=FILM | {"low": 0.0}, wear=None, cycles=1))
     model, now, trial, film = next(each for each in reversed(seen) if each[2].load.force)
     extent = now.extent

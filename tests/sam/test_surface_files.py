@@ -280,9 +280,7 @@ def test_a_file_without_a_size_a_unit_or_sense_is_refused(library, formats, cont
 
 
 def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
-    """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um
-    along y. Bytes that are no instrument's file end in one message.
-    """
+    """One hole, filled by the mean of its neighbours, weights 1/distance^2: 2 um along x, 1 um along y."""
     scene = rough(tmp_path, "pin.sdf", sdf_in_words("BAD"), 'missing = "harmonic"\n')
     values = scene.surface.path.values
     known = ~np.isnan(values)

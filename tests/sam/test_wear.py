@@ -205,9 +205,7 @@ def test_bad_faces_windows_orders_and_depths_are_refused():
 
 
 def state(seed, faces, nx=5, ny=4, raised=()):
-    """Random deviatoric plastic strain, an accumulated one above its norm, and depths of which some are 0,
-    some huge; raised: further shares of the deepest face.
-    """
+    """Random deviatoric plastic strain, an accumulated one above its norm, and depths from none to huge."""
     rng = np.random.default_rng(seed)
     strain = rng.standard_normal((6, len(faces) - 1, nx, ny))
     strain[2] = -strain[0] - strain[1]
@@ -234,9 +232,7 @@ LAYERS = st.lists(st.floats(0.05, 5), min_size=1, max_size=8)
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10**6), LAYERS, st.sampled_from([(), (-1e-9, -0.03, -1.3)]))
 def test_remap_conserves_and_creates_nothing(seed, thicknesses, raised):
-    """And equals differences of the integral over depth, which is linear over each layer: these are sums of
-    up to eight layers, and lose the ratio of depth to layer.
-    """
+    """Differences of the integral over depth, a sum over layers, lose the ratio of depth to layer."""
     faces = np.concatenate([[0], np.cumsum(thicknesses)]) * UM
     strain, alpha, depth = state(seed, faces, raised=raised)
     new_strain, removed_strain = remapped(strain, faces, depth)
@@ -315,10 +311,8 @@ def test_strain_shifted_where_all_repeats_wears_the_shifted_surface(wraps, fills
 
 @pytest.mark.parametrize("interpolate, fills", [(True, False), (False, False), (True, True)])
 def test_the_books_close_over_25_cycles(interpolate, fills):
-    """Heights of 0.3 um lose their rounding in each cycle; the volume of some um depth is held against it.
-
-    Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14
-    layers.
+    """Heights of 0.3 um lose their rounding in each cycle. Of the remap: four roundings of the depth, up to
+    five thicknesses, for each overlap, and sums over 14 layers.
     """
     rng = np.random.default_rng(5)
     shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
@@ -345,9 +339,8 @@ def test_the_books_close_over_25_cycles(interpolate, fills):
 
 @pytest.mark.parametrize("all_removed", [True, False])
 def test_material_that_smoothing_leaves_is_removed_again(all_removed):
-    """One cell removed, nothing strained later. The plain filter removes 27/175 of it, and its mean strain
-    falls by that factor until a tenth is left, digging the flanks in each cycle; if all of it goes, the
-    first cycle is the last.
+    """The plain filter removes 27/175 of one cell in each cycle until a tenth of its strain is left, and digs
+    the flanks; if all of it goes, the first cycle is the last.
     """
     alpha, faces, volumes = np.zeros((6, 9, 9)), np.arange(7.0), []
     alpha[0, 4, 4] = 1.0
