@@ -75,7 +75,7 @@ def test_strain_moves_the_surface_as_its_work_on_a_line_force_says(component):
 
 
 def test_residual_stress_of_a_section_balances_and_strain_along_the_line_acts_as_its_poisson_effect():
-    """No force crosses a vertical cut, no traction the surface; e_yy adds its Poisson effect and -E e_yy along y."""
+    """No force crosses a vertical cut, no traction the surface; e_yy acts by its Poisson effect."""
     cuboids = Cuboids(LINE, (0.5, 2.0), NU)
     parts = [between(0.0, 0.5), between(0.5, 2.0)] + [between(2.0**k, 2.0 ** (k + 1)) for k in range(1, 14)]
     z, w = (np.concatenate(each) for each in zip(*parts, strict=True))
