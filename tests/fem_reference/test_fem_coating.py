@@ -59,7 +59,6 @@ def test_layered_point_force_is_reciprocal():
 
 
 def test_record():
-    """All names and columns, the largest von Mises stress of coating and body, what is left out."""
     result = fem_reference.solve(scene(0.5, cells=6, loading={"unload": True}))
     q = result.quantities
     assert tuple(q) == QUANTITIES
@@ -96,7 +95,6 @@ def test_resumed_equals_uninterrupted():
 
 
 def test_other_contacts():
-    """An elastic counter-body, a punch, a given pressure, no force."""
     given = {"force": None, "prescribed": "hertz", "p0": 1e9, "radius": A}
     steel, punch, unloaded, pressed = (
         fem_reference.solve(scene(0.5, cells=8, **tables))
@@ -116,7 +114,6 @@ def test_other_contacts():
 
 
 def test_what_is_refused():
-    """Key, value, what is allowed; all at once."""
     wet = scene().model_dump()
     wet["body"]["coating"] |= {"poisson": 0.5, "thickness": 10 * A}
     soft, packages = scene(1.0, 1e13), (fem_reference, fem_reference.spatial)

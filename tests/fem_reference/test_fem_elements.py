@@ -176,7 +176,6 @@ def test_depths_of_a_coated_body():
 
 
 def test_surface_weights_are_integrals_of_the_shape_functions():
-    """Against adaptive quadrature of each shape function on an uneven line."""
     corners = np.array([0.0, 0.3, 0.5, 1.1])
     r = np.sort(np.concatenate([corners, 0.5 * (corners[:-1] + corners[1:])]))
     expected = np.zeros(r.size)

@@ -140,7 +140,6 @@ def dented(fem, approach, steps):
 
 
 def test_steps_in_a_dent_do_not_touch():
-    """The first step of the second cycle ends above the dent of the first, without force, at its approach."""
     history = dented(COARSE, 0.3e-6, 5)
     at = {place: k for k, place in enumerate(zip(history["cycle"], history["step"], strict=True))}
     assert history["approach_m"][at[2, 1] - 1] > 0.06e-6  # unloaded

@@ -138,13 +138,11 @@ def test_rolling_leaves_a_track():
     ],
 )
 def test_refused_by_name(tables, words):
-    """Every key that stands in the way, its value and what is allowed."""
     with pytest.raises(UnsupportedScene, match=words):
         check(scene(**{"counterbody": CYLINDER} | tables))
 
 
 def test_other_models_refuse_a_cylinder():
-    """By its shape; the plane-strain model is the reference of a cylinder."""
     for package in (fem_reference, fem_reference.spatial):
         with pytest.raises(UnsupportedScene, match=r'counterbody\.shape = "cylinder"'):
             package.check(line())

@@ -88,7 +88,6 @@ def test_consistent_tangent(law, shears):
 
 
 def test_curve_in_other_units():
-    """Strains in units of 1e-2, stresses in units of 5: values and slopes (chain rule) of the curve."""
     curve, e = CURVES["swift"], np.array([0.0, 0.3, 2.0])
     scaled = CurveInUnits(curve, 1e-2, 5.0)
     assert scaled.stress(e) == pytest.approx(curve.stress(e * 1e-2) / 5, rel=1e-14)
@@ -96,7 +95,6 @@ def test_curve_in_other_units():
 
 
 def test_parts_are_their_materials():
-    """Element by element the return map of each material; what never yields keeps Hooke's law."""
     rng = np.random.default_rng(5)
     strain = rng.normal(size=(4, 6, 4))
     inside = np.array([True, False, True, False, False, True])

@@ -100,7 +100,6 @@ def test_an_ellipsoid_over_a_rough_body_has_its_gap_and_slope_at_each_place():
 
 
 def test_the_map_is_read_where_the_nodes_are():
-    """A map that varies along y alone stays one along y."""
     values = np.repeat(np.linspace(0.1, 0.4, 12)[None, :], 12, axis=0)
     made = spatial.plan(rough(12, friction=friction_map(values)))
     patch = tuple(

@@ -94,14 +94,12 @@ def test_a_load_that_travels():
     ],
 )
 def test_what_is_refused(made, words):
-    """The reasons name key, value and what is allowed."""
     for asked in (spatial.check, spatial.solve):
         with pytest.raises(spatial.UnsupportedScene, match=words):
             asked(made)
 
 
 def test_statuses():
-    """Too few elements in the contact; no force at all."""
     assert spatial.solve(scene(2)).status == "under-resolved"
     empty = spatial.solve(scene(force=0.0))
     assert empty.converged and empty.quantities["p_max_Pa"] == 0.0
@@ -248,7 +246,6 @@ def test_resumed_passes_are_equal_and_hold_what_results_read():
 
 
 def test_multigrid_is_deterministic_and_symmetric():
-    """The approximate inverse is symmetric, and twice the same."""
     line = two_sided(-1.0, 1.0, 0.25, 5.0)
     solid = HexSolid(block(Lines(line, line[line >= 0], line[line >= 0], True)), Elastic(1.0, 0.3))
     mesh = solid.basis.mesh

@@ -49,7 +49,6 @@ def test_area_below_a_punch_and_up_to_the_edge_of_the_grid_is_that_of_the_cells(
 
 
 def test_the_certificate_describes_the_returned_field():
-    """Gap, penetration and load recomputed from the pressure alone, by a direct sum over all cells."""
     contact, gap0, h = sphere(25)
     coefficients = h * 2 * displacement_coefficients(Lags(25, 25, 1.0, 1.0), nu=0.0)  # E* = 1
     i = np.arange(25)
@@ -173,7 +172,6 @@ def test_six_cells_across_resolve_a_contact(width, enough):
 
 
 def direct_sum(kernel, signs, field, source, observed):
-    """Sum over source cells of K[observed - source] f, cell by cell."""
     out = np.zeros(observed.shape)
     for i, j in np.ndindex(*observed.shape):
         for k, m in np.ndindex(*source.shape):
@@ -209,7 +207,6 @@ def test_equals_the_direct_sum(source, observed):
 
 
 def test_stresses_are_sums_of_coefficients_over_cells():
-    """Of a pressure and of a traction, on cells of any size."""
     rng, window, depths = np.random.default_rng(6), Window(0, 0, 5, 4), np.array([0.0, 0.7, 2.0])
     loads = {3: rng.normal(size=(5, 4)), 1: rng.normal(size=(5, 4))}
     found = stresses(loads, (2.0, 1.5), depths, window, nu=0.3)

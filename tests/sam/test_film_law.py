@@ -231,7 +231,6 @@ def test_printed_flow_of_one_component_ends_on_the_yield_surface(component):
 
 
 def test_surface_strain_follows_a_line_through_two_layers():
-    """Strain that is linear in depth, half elastic and half plastic."""
     depths, slope = np.array([0.3, 1.1]), np.array([2e-3, -1e-3, 5e-4, 4e-4])
     total = np.array([1e-3, 2e-3, -1e-3, 3e-4])[:, None] + slope[:, None] * depths
     bulk, shear = moduli(0.3)

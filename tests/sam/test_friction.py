@@ -148,7 +148,6 @@ def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_thei
 
 
 def test_a_traction_of_a_field_of_coefficients():
-    """The coefficient may differ from cell to cell: q = coefficient * p in the gap and in the stress."""
     model, now = begin(small_scene(body={"plasticity": SWIFT}, friction=0.3, grid={"cells": (17, 17)}))
     rng, problem = np.random.default_rng(5), model.problem(now.extent)
     field = rng.random(now.state.pressure.shape)

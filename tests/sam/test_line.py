@@ -22,7 +22,6 @@ PLANE = [STRESS.index(name) for name in ("11", "22", "33", "13")]
 
 
 def between(low, high):
-    """Gauss points and weights."""
     return (low + high) / 2 + (high - low) / 2 * NODES, (high - low) / 2 * WEIGHTS
 
 

@@ -158,7 +158,6 @@ def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> S
 
 class TestGroove:
     def test_has_its_measures(self):
-        """A pass on few cells in coarse steps."""
         found = sam.solve(moving({"steps": 8}, track=6.0, loading={"steps": 2}))
         quantities, table = found.quantities, found.tables["track"]
         steady = np.array(table["steady"]) == 1
@@ -263,7 +262,6 @@ def sliding(surface, *, body=None, **loading) -> Scene:
 
 
 def test_a_body_that_yields_only_further_along_the_path():
-    """The first place stays elastic by itself, and a later one does not."""
     loading = {"force": 0.01, "path": {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 6}}
     keys = {"counterbody": {"shape": "sphere", "radius": 400e-6}, "loading": loading, "cycles": 1, "steps": 1}
     law = {"law": "perfect", "yield_stress": 3.8e9}

@@ -117,7 +117,6 @@ def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
 
 
 def test_a_step_too_large_is_cut(monkeypatch):
-    """With few iterations allowed, one step of perfect plasticity is cut until it converges, and says so."""
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
     result = sam.solve(yielding(2.5, PERFECT, grid=SMALL))
     assert result.status is Status.CONVERGED and result.cost["step_cuts"] >= 1

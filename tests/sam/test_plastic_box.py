@@ -45,7 +45,6 @@ def product(one, other) -> tuple[int, int]:
 
 
 def direct_sum(kernel, sign, field):
-    """Sum over the source cells of one layer, with the sign of the lag."""
     lx, ly = (np.arange(n)[:, None] - np.arange(n) for n in (NX, NY))
     signs = np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)
     return np.einsum("ikjm,km->ij", kernel[np.abs(lx)[:, :, None, None], np.abs(ly)] * signs, field)
@@ -308,7 +307,6 @@ def test_two_steps_end_on_the_yield_surface_of_each_point(name):
 
 
 def virgin(material) -> CellFields:
-    """Two layers of cells that never yielded."""
     return CellFields(~every((2, *CELLS)), material.virgin((POINTS, 0)))
 
 

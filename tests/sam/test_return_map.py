@@ -83,7 +83,6 @@ BOTH = pytest.mark.parametrize("model", POINTS)
 @BOTH
 @pytest.mark.parametrize(("law", "component", "end"), [(THREE, 0, 0.02), (ONE, 5, 0.015)])
 def test_stable_loop_between_given_strains(model, law, component, end):
-    """The amplitudes of stress and plastic strain satisfy the closed form, in any number of steps."""
     specimen = Specimen(POINTS[model](PERFECT, *law))
     stress, plastic = specimen.by_strain(component, (end, -end) * 5)[-1]
     root3 = np.sqrt(3) if component else 1.0  # shear: tau sqrt(3), and 2 eps_p/sqrt(3)
