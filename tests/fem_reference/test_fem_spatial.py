@@ -52,12 +52,6 @@ def film(h, ratio=80 / 210, strength=None, poisson=NU):
     return {"coating": coating}
 
 
-def equal_tables(first, second, names):
-    for name in names:
-        for column, values in first.tables[name].items():
-            np.testing.assert_array_equal(second.tables[name][column], values, f"{name} {column}")
-
-
 def test_alternating_cycles_are_mirror_images():
     """The second cycle of alternating friction is the first with x reversed (tolerance of the loop)."""
     model = build(plan(scene(3, 0.4, direction="alternating", cycles=2)))
@@ -230,9 +224,10 @@ def test_resumed_passes_are_equal_and_hold_what_results_read():
     """Of the states inside a pass only those that a step begins from have displacements."""
     made, records = moving(0.4, 1, unload=True, cycles=2, steps=1, box=3.0), []
     whole = spatial.solve(made, checkpoint=records.append)
-    equal_tables(
-        whole, spatial.solve(made, start=records[-3]), ("history", "passes", "track", "cross", "line")
-    )
+    resumed = spatial.solve(made, start=records[-3])
+    for name in ("history", "passes", "track", "cross", "line"):
+        for column, values in whole.tables[name].items():
+            np.testing.assert_array_equal(resumed.tables[name][column], values, f"{name} {column}")
     assert all(list(whole.tables[name]) == list(COLUMNS[name]) for name in ("track", "cross", "passes"))
     model, steps = spatial.load_steps(made, records[-1])
     held = [bool(step.state.u.size) for step in steps]
