@@ -150,19 +150,18 @@ def test_a_pass_back_leaves_the_mirror_image_of_one_forth():
     assert back["uz_m"][::-1] == pytest.approx(forth["uz_m"], abs=1e-3 * np.max(forth["uz_m"]))
 
 
+def layer(lags: Lags) -> Cuboids:
+    return Cuboids(lags, (0.0, 0.6), NU)
+
+
 PERIOD, IMAGES = 4, 300
 ODD = ODD_Y.astype(bool)
+ODD_BOTH = np.not_equal.outer(ODD, ODD)
 COEFFICIENTS = {
     "displacement": (lambda lags: displacement_coefficients(lags, NU), np.array(False)),
     "stress": (lambda lags: stress_coefficients(lags, 0.4, NU, load=1)[:, 0], ODD),
-    "strained surface": (
-        lambda lags: surface_displacement_coefficients(Cuboids(lags, (0.0, 0.6), NU))[:, 0],
-        ODD,
-    ),
-    "residual stress": (
-        lambda lags: residual_stress_coefficients(Cuboids(lags, (0.0, 0.6), NU), 0.3)[:, :, 0, 0],
-        np.not_equal.outer(ODD, ODD),
-    ),
+    "strained surface": (lambda lags: surface_displacement_coefficients(layer(lags))[:, 0], ODD),
+    "residual stress": (lambda lags: residual_stress_coefficients(layer(lags), 0.3)[:, :, 0, 0], ODD_BOTH),
 }
 
 

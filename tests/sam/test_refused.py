@@ -205,7 +205,6 @@ n = 0 | 1.0 | nan -> = & from 1e-06 to 0.999999
 alpha = 0 -> = & a number from 1e-15
 yield_stress = '1 GPa' -> yield_stress = & law = "swift" takes B, C, n, alpha: remove
 ## LINEAR body.plasticity.
--modulus -> modulus is missing & yield_stress, modulus
 modulus = '-1 GPa' -> = & or 0
 ## PERFECT body.plasticity.
 modulus = '0 Pa' -> modulus = & "perfect" takes yield_stress: remove
@@ -225,7 +224,6 @@ body.plasticity.layer = 3 -> = & a table
 $FILM -> body.plasticity.layer & not together with [body.coating]
 ## LAYER body.plasticity.layer.
 law = 'voce' -> = & "swift", "linear"
-modulus = '1 GPa' -> = & takes B, C, n, alpha: remove it
 profile = 'p.csv' -> @profile & unknown key
 layer_thickness = '1 um' -> @layer_thickness & unknown key, did you mean body.plasticity.layer_thickness
 -B; -C; -n; law = 'table'; file = 'curve.csv' -> = & line 3 & softening is not available
@@ -293,7 +291,6 @@ renew = true -> = & did you mean counterbody.surface.renew?
 surface = 'map.csv' -> = & a table
 ## WAVE counterbody.surface.
 amplitude = '0 um' -> = & from 1e-30 to 1e+30 m
-seed = 1 -> = & takes amplitude, wavelength_x, wavelength_y: remove it
 wavelength_x = '1 um' -> grid.cells & in the shortest wavelength
 ## RENEWED counterbody.surface.
 renew = 1 | 'each' | [true] -> = & true or false
