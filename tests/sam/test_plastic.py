@@ -43,6 +43,10 @@ def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
     strain, by less than 0.2 %. A budget of work: a counter, not seconds (measured 25).
     """
     assert swift4.status is Status.CONVERGED and swift4.cost["operator_applications"] <= 32
+    certificate = swift4.certificate
+    assert certificate["yield_excess"] <= 1e-6 and certificate["flow_residual"] <= 1e-6
+    assert certificate["yield_excess_outside_box"] == 0.0 and certificate["load_error"] < 1e-12
+    assert certificate["gap_in_contact"] < 2e-8 and certificate["penetration"] < 2e-8
     axis = {name: np.asarray(column) for name, column in swift4.tables["axis"].items()}
     peak = axis["state"] == "peak"
     curve = Swift(945e6, 20, 0.121)
@@ -173,6 +177,7 @@ def test_a_chosen_grid_grows_with_the_load_at_the_same_cell_size():
 @pytest.mark.parametrize(
     ("grid", "reached", "expected"),
     [
+        (None, Sides(), None),
         (None, Sides(beside=True), Room(RATIO, 1.0)),
         (None, Sides(True, True), Room(RATIO, RATIO)),
         (SMALL, Sides(beside=True), None),

@@ -205,6 +205,7 @@ n = 0 | 1.0 | nan -> = & from 1e-06 to 0.999999
 alpha = 0 -> = & a number from 1e-15
 yield_stress = '1 GPa' -> yield_stress = & law = "swift" takes B, C, n, alpha: remove
 ## LINEAR body.plasticity.
+-modulus -> modulus is missing & yield_stress, modulus
 modulus = '-1 GPa' -> = & or 0
 ## PERFECT body.plasticity.
 modulus = '0 Pa' -> modulus = & "perfect" takes yield_stress: remove
