@@ -134,9 +134,6 @@ def test_bad_layers_are_refused(field, value):
 QUADRATURE = 1e-9
 """Of the largest component, against quadrature; measured 3e-10 and below (issue: 1e-7)."""
 LAGS = [(0, 0), (1, 0), (3, 2), (0, 4)]
-MATERIALS = pytest.mark.parametrize(
-    "layers, load", [(COATED, 1), (COATED, 2), (COATED, 3), (STIFF, 3), (SOFT, 1), (SOFT, 3)]
-)
 
 
 def waves(cell, lags, decay):
@@ -158,43 +155,8 @@ def waves(cell, lags, decay):
     return k, phi, [load * np.exp(1j * (kx * i * cell[0] + ky * j * cell[1])) for i, j in lags]
 
 
-def wave_tensors(in_plane, antiplane, phi, load):
-    """Stress tensor in x, y, z, (3, 3, k, phi), of a traction e^{i k x} along x (1), y (2) or z (3)."""
-    c, s, zero = np.cos(phi), np.sin(phi), np.zeros(in_plane.shape[-1])
-    rotation = np.array([[c, -s, 0 * c], [s, c, 0 * c], [0 * c, 0 * c, 0 * c + 1]])  # columns: L, T, z
-    total, turn = 0, np.einsum("iap,jbp->ijpab", rotation, rotation).reshape(-1, 9)
-    for source in range(3):  # traction along L, T, z; sin = Re(-i e), so a load e^{ikL} along L has q_L = i
-        if source == 1:
-            zt, lt = antiplane
-            local = np.array([[zero, 1j * lt, zero], [1j * lt, zero, zt], [zero, zt, zero]])
-        else:
-            zz, along, across, zl = in_plane[0] if source == 2 else 1j * in_plane[1]
-            local = np.array([[along, zero, -1j * zl], [zero, across, zero], [-1j * zl, zero, zz]])
-        turned = (turn @ local.reshape(9, -1)).reshape(3, 3, phi.size, -1)
-        total = total + rotation[load - 1, source][:, None] * turned
-    return np.swapaxes(total, -1, -2)
-
-
-def by_quadrature(layers, cell, lags, height, load):
-    """Six stresses at the lags, (lags, 6), at the depth height times thickness."""
-    k, phi, weights = waves(cell, lags, height)
-    tensor = wave_tensors(*Response(layers, k).stress(height * layers.thickness), phi, load)
-    picked = [tensor[int(name[0]) - 1, int(name[1]) - 1] for name in STRESS]
-    return np.array([[np.sum(f * w).real for f in picked] for w in weights])
-
-
 def at(coefficients, lags):
     return np.array([coefficients[..., i, j] for i, j in lags])
-
-
-@MATERIALS
-def test_stress_equals_quadrature(layers, load):
-    """In the film on both sides of where a closed form is taken out, at the interface, in the body."""
-    for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
-        answer = by_quadrature(layers, cell, LAGS, height, load)
-        lags = Lags(4, 5, cell[0] * THICKNESS, cell[1] * THICKNESS)
-        ours = at(LayeredPatches(layers).stress(lags, [height * THICKNESS], load=load)[:, 0], LAGS)
-        assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max(), (cell, height)
 
 
 def displacement_by_quadrature(layers, cell, lags, load):
@@ -215,7 +177,9 @@ def displacement_by_quadrature(layers, cell, lags, load):
     return excess + at(np.array(film), lags)
 
 
-@MATERIALS
+@pytest.mark.parametrize(
+    "layers, load", [(COATED, 1), (COATED, 2), (COATED, 3), (STIFF, 3), (SOFT, 1), (SOFT, 3)]
+)
 def test_displacement_equals_quadrature(layers, load):
     for cell in ((1.0, 0.7), (0.3, 0.4)):
         answer = displacement_by_quadrature(layers, cell, LAGS, load)
@@ -225,7 +189,7 @@ def test_displacement_equals_quadrature(layers, load):
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max()
 
 
-@pytest.mark.parametrize("load, nu", [*product((1, 3), (0.0, 0.3, 0.5))])
+@pytest.mark.parametrize("load, nu", [*product((1, 3), (0.0, 0.3, 0.5)), (2, 0.3)])
 @pytest.mark.parametrize("cell", [0.1, 1.0, 10.0])
 def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
     """Smaller and larger than the thickness; radial tables of a spline of fifth degree hold 1e-11."""
