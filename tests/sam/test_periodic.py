@@ -89,8 +89,8 @@ BOX = Cuboids(Lags(16, 12, 1.0, 1.25), FACES, NU)
 STRAIN = np.random.default_rng(1).standard_normal((6, 5, 16, 12))
 
 
-def operator(box: Cuboids = BOX) -> PeriodicOperator:
-    return PeriodicOperator(HELD, box, 1.0, Counters(), swept=1e-7)
+def operator(box: Cuboids = BOX, bodies: PeriodicHalfSpaces = HELD) -> PeriodicOperator:
+    return PeriodicOperator(bodies, box, 1.0, Counters(), swept=1e-7)
 
 
 def stress_of(box: BoxOperator, strain: np.ndarray) -> np.ndarray:
@@ -114,6 +114,19 @@ def test_plastic_strain_repeats_wherever_the_period_begins():
     np.testing.assert_allclose(stress_of(box, moved), np.roll(stress, (5, 7), (2, 3)), rtol=0, atol=1e-12)
     tiled = stress_of(twice, np.tile(STRAIN, (1, 1, 2, 1)))
     np.testing.assert_allclose(tiled, np.tile(stress, (1, 1, 2, 1)), rtol=0, atol=1e-4)
+
+
+def test_laterally_uniform_strain_by_hand():
+    """s_11 = -2 mu (e_11 + nu e_22)/(1 - nu), s_12 = -2 mu e_12, s_i3 = 0, or nothing where it may spread."""
+    e = np.broadcast_to(STRAIN.mean(axis=(2, 3), keepdims=True), STRAIN.shape)
+    exact = np.zeros_like(e)
+    exact[0] = -2 * (e[0] + NU * e[1]) / (1 - NU)
+    exact[1] = -2 * (e[1] + NU * e[0]) / (1 - NU)
+    exact[5] = -2 * e[5]
+    box = operator()
+    np.testing.assert_allclose(stress_of(box, e), exact, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(stress_of(operator(bodies=PeriodicHalfSpaces(free=True)), e), 0, atol=1e-12)
+    np.testing.assert_allclose(box.displacement(box.transformed(e)), 0, atol=1e-12)
 
 
 def test_harmonic_dilatation_moves_the_surface_by_hand():

@@ -262,6 +262,19 @@ def test_x_y_sign_and_unit_of_files_written_by_hand(library):
         assert np.allclose(found, WANTED, rtol=1e-12, atol=0)
 
 
+@pytest.mark.parametrize("ending", ["gwy", "x3p", "nc"])
+def test_files_that_the_library_writes_come_back(library, tmp_path, ending):
+    """Heights in um of which one is missing (x3p, gwy; the writer of nc allows none)."""
+    values = np.ma.masked_array(WANTED * 1e6, mask=np.zeros((5, 4), dtype=bool))
+    values[1, 2] = values[1, 2] if ending == "nc" else np.ma.masked
+    topography = library.Topography(values if ending != "nc" else values.filled(), (10.0, 4.0), unit="µm")
+    getattr(topography, "to_netcdf" if ending == "nc" else f"to_{ending}")(str(tmp_path / f"h.{ending}"))
+    head, found = heights_in((tmp_path / f"h.{ending}").read_bytes(), [ending], 4097)
+    assert head["extent"] == pytest.approx([1e-5, 4e-6], rel=1e-12)
+    known = ~np.isnan(found)
+    assert (~known).sum() == (ending != "nc") and np.allclose(found[known], WANTED[known], rtol=1e-12, atol=0)
+
+
 @pytest.mark.parametrize(
     ("formats", "content", "message"),
     [

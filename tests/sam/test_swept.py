@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sweeps over depth against the matrices between all layers."""
+"""Sweeps over depth against the matrices between all layers, and against the tables they are derived from."""
 
 import numpy as np
 import pytest
@@ -8,48 +8,135 @@ from made_results import column as of_state
 
 import sam
 from sam.contact.convolution import Counters
+from sam.kernels.eigenstrain import ENTRIES, FOURTH, MIRRORED, _full_space_matrix, eigenstrain_table
 from sam.kernels.patches import Cuboids, Lags
-from sam.plasticity.spectra import SINGLE, BoxOperator
-from sam.plasticity.swept import neighbours
+from sam.plasticity.spectra import ODD_X, ODD_Y, BoxOperator
+from sam.plasticity.swept import GAUSS, Sweeps, SweptLayers
 
 EVEN, GRADED = np.arange(7.0), np.append(0.0, np.cumsum(0.3 * 1.5 ** np.arange(6)))
+ASPECT = 0.7
+PHASE = (-1j) ** (ODD_X + ODD_Y)
+
+
+def in_waves(nu, kx, ky, z, source):
+    """Stress/mu at depths z by a unit strain per depth at others, of one wave, (6, 6, z, source), in the
+    full space, and what the free surface adds. R and 1/R are -2 pi (1 + k |zeta|) e^{-k |zeta|}/k^3 and
+    2 pi e^{-k zeta}/k in wave numbers.
+    """
+    k, zeta, sum_z = np.hypot(kx, ky), np.abs(z[:, None] - source), z[:, None] + source
+    full, image = np.zeros((2, 36, *zeta.shape), complex)
+    for column, indices in zip(_full_space_matrix(nu).T / (8 * np.pi * (1 - nu)), FOURTH, strict=True):
+        a, b, c = (indices.count(i) for i in range(3))
+        of_z = (
+            (-k) ** c * (1 - c + k * zeta) * np.exp(-k * zeta)
+        )  # c-th derivative of (1 + k zeta) e^{-k zeta}
+        full += column[:, None, None] * -2 * np.pi / k**3 * (1j * kx) ** a * (1j * ky) ** b * of_z
+    for row, name in enumerate(ENTRIES):
+        for (p, q, a, b, c), powers in eigenstrain_table()["stress"][name].items():
+            factor = sum(value * nu**n for n, value in enumerate(powers)) / (8 * np.pi * (1 - nu))
+            of_z = (-k) ** c * 2 * np.pi / k * np.exp(-k * sum_z)
+            image[row] += factor * np.outer(z**p, source**q) * (1j * kx) ** a * (1j * ky) ** b * of_z
+    full *= np.where(z[:, None] < source, MIRRORED, 1)
+    return full.reshape(6, 6, *zeta.shape), image.reshape(6, 6, *zeta.shape)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("faces", [EVEN, GRADED], ids=["even", "graded"])
+def test_sweeps_sum_over_the_layers_what_the_tables_give(nu, faces):
+    """Quadrature over the strained layer, points of the observed one; no full space in its own layer."""
+    rng = np.random.default_rng(0)
+    layers = len(faces) - 1
+    box = Cuboids(Lags(4, 4, 1.0, ASPECT), tuple(faces), nu)
+    waves, centres, halves = rng.uniform(0.1, 3.0, (2, 2)), (faces[1:] + faces[:-1]) / 2, np.diff(faces) / 2
+    x, w = np.polynomial.legendre.leggauss(12)
+    z, source = (np.add(centres[:, None], np.outer(halves, at)).ravel() for at in (GAUSS, x))
+    weight = np.outer(halves, w).ravel() / 2
+    expected = np.zeros((2, 6, layers, 6, layers))
+    for n, (kx, ky) in enumerate(waves.T):
+        plane = np.sinc(kx / 2 / np.pi) * np.sinc(ky * ASPECT / 2 / np.pi) * np.cos(kx / 2 / np.sqrt(3))
+        plane *= np.cos(ky * ASPECT / 2 / np.sqrt(3))
+        full, image = (
+            (plane * weight * each).reshape(6, 6, layers, 2, layers, 12).sum(axis=(3, 5))
+            for each in in_waves(nu, kx, ky, z, source)
+        )
+        stress = (full * (1 - np.eye(layers)) + image).swapaxes(1, 2)
+        stress /= PHASE.reshape(6, 1, 1, 1) * PHASE.reshape(6, 1)
+        expected[n] = stress.real
+        assert np.abs(stress.imag).max() < 1e-14
+    size, strain = np.abs(expected).max(), rng.standard_normal((2, 6 * layers, 3))
+    for real, rounding in ((np.float64, 1e-12), (np.float32, 1e-6)):
+        found = next(each for _, each in Sweeps(waves, box, real).matrices(reflected=True))
+        assert np.abs(found - expected).max() <= rounding * size
+        product = found.reshape(2, 6 * layers, -1) @ strain
+        assert np.abs(Sweeps(waves, box, real)(strain) - product).max() <= rounding * np.abs(product).max()
+
+
+class Drawn:
+    """Coefficients drawn at random, alike for layers alike at equal distances."""
+
+    def __init__(self, faces, waves, nu):
+        self.faces, self.waves, self.nu, self.known = faces, waves, nu, {}
+
+    def pair(self, i, j):
+        key = np.round([*np.diff(self.faces)[[i, j]], self.faces[i] - self.faces[j]], 9).tobytes()
+        seed = np.frombuffer(key, np.uint32)
+        return np.random.default_rng(seed).standard_normal((6, 6, self.waves.shape[1]))
+
+    def full_space(self, observed, sources):
+        return np.stack([self.pair(observed, j) for j in range(sources.start, sources.stop)], axis=2)
+
+    def image(self, layers):
+        shape = (6, layers, 6, layers, self.waves.shape[1])
+        return np.random.default_rng(layers).standard_normal(shape)
+
+
 TWO = np.append(np.arange(5.0) / 4, np.arange(2.0, 9.0))
 
 
+@pytest.mark.parametrize("error", [0.5, 1e-3, 1e-30])
+@pytest.mark.parametrize("faces", [EVEN, np.arange(3.0), GRADED, TWO], ids=["even", "few", "graded", "two"])
+def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
+    """In place of (h), between layers less than log(8/error)/pi cells apart and their images."""
+    layers, waves = len(faces) - 1, np.array([[0.0, 0.4, 3.0], [0.0, 1.0, 0.2]])
+    box, drawn = Cuboids(Lags(4, 4, 1.0, 1.0), tuple(faces), 0.3), Drawn(faces, waves, 0.3)
+    full, both = (next(Sweeps(waves, box, np.float64).matrices(each))[1] for each in (False, True))
+    expected, reach = both.copy(), np.log(8 / error) / np.pi
+    top = np.count_nonzero(faces[:-1] < reach)
+    some = slice(0, top)
+    expected[:, :, some, :, some] += np.moveaxis(drawn.image(top), -1, 0)
+    expected[:, :, some, :, some] -= (both - full)[:, :, some, :, some]
+    for i, j in np.ndindex(layers, layers):
+        if max(faces[i] - faces[j + 1], faces[j] - faces[i + 1]) < reach:
+            expected[:, :, i, :, j] += np.moveaxis(drawn.pair(i, j), -1, 0) - full[:, :, i, :, j]
+    strain = np.random.default_rng(3).standard_normal((3, 6 * layers, 2))
+    expected = expected.reshape(3, 6 * layers, -1) @ strain
+    for real, rounding in ((np.float64, 1e-12), (np.float32, 1e-6)):
+        swept = SweptLayers(drawn, waves, box, error=error, real=real)
+        assert np.abs(swept(strain.astype(real)) - expected).max() <= rounding * np.abs(expected).max()
+        counts = [run.count for run in swept.runs]
+        assert sum(counts) == layers and (faces is not EVEN or len(counts) == 1)
+
+
 @pytest.mark.parametrize(
-    ("faces", "n", "error", "nu", "kind"),
+    ("faces", "n", "error", "kind"),
     [
-        (EVEN, 8, 1e-4, 0.5, {"tolerance": SINGLE}),
-        (GRADED, 8, 1e-4, 0.3, {"mirror": (False, True)}),
-        (TWO, 8, 1e-4, 0.0, {}),
-        (np.arange(19.0) / 2, 8, 1e-4, 0.3, {"mirror": (True, True), "exchange": True}),
-        (np.arange(14.0), 16, 1e-6, 0.0, {}),
-        (np.append(0.0, np.cumsum(0.4 * 1.25 ** np.arange(8))), 16, 1e-6, 0.5, {}),
+        (EVEN, 8, 1e-4, {}),
+        (GRADED, 8, 1e-4, {"mirror": (False, True)}),
+        (np.arange(19.0) / 2, 8, 1e-4, {"mirror": (True, True), "exchange": True}),
+        (np.arange(14.0), 16, 1e-6, {}),
+        (np.append(0.0, np.cumsum(0.4 * 1.25 ** np.arange(8))), 16, 1e-6, {}),
     ],
-    ids=["even", "graded", "two", "many", "even, small error", "graded, small error"],
+    ids=["even", "graded", "many", "even, small error", "graded, small error"],
 )
-def test_swept_stress_is_that_of_the_matrices(faces, n, error, nu, kind):
+def test_swept_stress_is_that_of_the_matrices(faces, n, error, kind):
     """To the stated error, without images of the period and with the waves shorter than the cells."""
-    box = Cuboids(Lags(n, n, 1.0, 1.0 if "exchange" in kind else 0.7), tuple(faces), nu)
+    box = Cuboids(Lags(n, n, 1.0, 1.0 if "exchange" in kind else ASPECT), tuple(faces), 0.3)
     dense, swept = (BoxOperator(box, 1.0, Counters(), swept=each, **kind) for each in (0.0, error))
     strain = dense.keep(np.random.default_rng(1).standard_normal((6, len(faces) - 1, n, n)))
     if "exchange" in kind:
         strain = strain + strain[[1, 0, 2, 4, 3, 5]].swapaxes(-1, -2)
     expected, found = (on.stress(None, on.response(on.transformed(strain))) for on in (dense, swept))
     assert np.linalg.norm(found - expected) <= error * np.linalg.norm(strain)
-
-
-@pytest.mark.parametrize("error", [0.5, 1e-3])
-@pytest.mark.parametrize("faces", [EVEN, GRADED, TWO], ids=["even", "graded", "two"])
-def test_layers_near_each_other_have_the_coefficients_of_cells(faces, error):
-    """Less than log(8/error)/pi cells apart, or from the mirror image of the first; equal ones are a run."""
-    reach, (runs, top) = np.log(8 / error) / np.pi, neighbours(faces, error)
-    layers = range(len(faces) - 1)
-    found = [(i, i + d) for run in runs for i in layers[run.first :][: run.count] for d in sorted(run.keys)]
-    gap = np.subtract.outer(faces[:-1], faces[1:])
-    near = np.argwhere(np.maximum(gap, gap.T) < reach).tolist()
-    assert [[i, j] for i, j in found if j in layers] == near
-    assert top == np.count_nonzero(faces[:-1] < reach) and (faces is not EVEN or len(runs) == 1)
 
 
 def test_stresses_beside_a_large_box_are_those_of_its_coefficients(monkeypatch):
