@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""A material point under given strains, with the return map of either model."""
+"""A material point under given strains and stresses, with the return map of either model."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import fsolve
 
 from fem_reference.common.back_stress import BackStresses, KinematicJ2
 from fem_reference.common.bodies import Elastic
@@ -64,3 +65,37 @@ class FemPoint:
 
 
 POINTS = {"sam": SamPoint, "fem": FemPoint}
+
+
+class Specimen:
+    """A material point whose components are moved by strain or by stress; all others are free of stress."""
+
+    def __init__(self, point):
+        self.point, self.strain, self.stress = point, np.zeros(6), np.zeros(6)
+
+    def to(self, *, strain=None, stress=None):
+        """Moves in one step. strain, stress: component -> value in 1 and in Pa."""
+        given, wanted = strain or {}, stress or {}
+        free = [i for i in range(6) if i not in given]
+        total = self.strain.copy()
+        total[list(given)] = list(given.values())
+
+        def off(values):
+            total[free] = values
+            found = self.point.at(total)[0]
+            return [(found[i] - wanted.get(i, 0.0)) / YOUNG for i in free]
+
+        if free:
+            total[free] = fsolve(off, self.strain[free], xtol=1e-13, full_output=True)[0]
+            assert np.abs(off(total[free])).max() < 1e-12
+        self.strain = total
+        self.stress, self.point.state = self.point.at(total)
+
+    def by_strain(self, component, ends, steps=1):
+        """Moves one component from end to end in equal steps; the stress (Pa) and plastic strain at each."""
+        found = []
+        for end in ends:
+            for value in np.linspace(self.strain[component], end, steps + 1)[1:]:
+                self.to(strain={component: value})
+            found.append((self.stress[component], self.point.plastic[0][component]))
+        return found

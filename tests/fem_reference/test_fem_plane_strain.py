@@ -100,6 +100,21 @@ def test_full_slip_is_askew():
     assert model.centroid(state) / wide == pytest.approx(-8.0 / 3.0 * k, rel=5e-3)
 
 
+def test_flow_does_not_lock():
+    """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
+    rises towards it; the volume changes elastically alone.
+    """
+    model, steps = load_steps(line(6.0, cells=3, plasticity=PERFECT, steps=6))
+    mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
+    mean = [force / model.size(step.state) for force, step in zip(mean, steps, strict=True)]
+    assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
+    state = steps[-1].state
+    volume = model.body.strain(state.u)[:3].sum(axis=0)
+    bulk = model.stress(state)[:3].sum(axis=0) * (1.0 - 2.0 * 0.3) / (1.0 - 0.3**2)
+    np.testing.assert_allclose(volume, bulk, atol=1e-9)
+    assert np.abs(state.history.plastic_strain[:3].sum(axis=0)).max() < 1e-9
+
+
 def test_far_field_of_plastic_strain():
     """Residual stresses do not depend on the box, and those along x have no resultant on a line x = const."""
     found = []

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A material point in the return maps of both models: energies of a step, layers with laws of their own."""
+"""A material point in the return maps of both models: closed forms, energies of a step, layers of other laws.
+
+With constant yield stress Y and S = C/g a loop of strain with the plastic amplitude e has the stress
+amplitude Y + sum S tanh(g e) (+ C e for g = 0).
+"""
 
 from __future__ import annotations
 
@@ -28,7 +32,7 @@ from sam.plasticity.flow import (
 from sam.scene import Plasticity, load_scene, plastic_work, step_energies, stored_energy
 from sam.scene.body import LAWS
 from sam.scene.yield_curve import DepthProfile, Kinks, Linear, Strength, Swift, Tabulated
-from tests.material_point import MU, POINTS, YOUNG, SamPoint
+from tests.material_point import MU, POINTS, YOUNG, SamPoint, Specimen
 from verification.checks.material import yield_stress
 
 PERFECT, SWIFT = Linear(1e9), Swift(945e6, 20.0, 0.121)
@@ -75,6 +79,18 @@ PRAGER = ([YOUNG / 19], [0.0])
 ONE = ([150e9], [300.0])
 THREE = ([400e9, 60e9, 6e9], [2000.0, 300.0, 0.0])
 BOTH = pytest.mark.parametrize("model", POINTS)
+
+
+@BOTH
+@pytest.mark.parametrize(("law", "component", "end"), [(THREE, 0, 0.02), (ONE, 5, 0.015)])
+def test_stable_loop_between_given_strains(model, law, component, end):
+    """The amplitudes of stress and plastic strain satisfy the closed form, in any number of steps."""
+    specimen = Specimen(POINTS[model](PERFECT, *law))
+    stress, plastic = specimen.by_strain(component, (end, -end) * 5)[-1]
+    root3 = np.sqrt(3) if component else 1.0  # shear: tau sqrt(3), and 2 eps_p/sqrt(3)
+    stress, plastic = -stress * root3, -plastic * (2 / root3 if component else 1.0)
+    saturating = [C / g * np.tanh(g * plastic) if g else C * plastic for C, g in zip(*law, strict=True)]
+    assert stress == pytest.approx(1e9 + sum(saturating), rel=1e-7)
 
 
 @pytest.mark.parametrize("law", [ONE, THREE], ids=["one", "three"])
