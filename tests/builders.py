@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The scenes that the tests share: the text of a scene file, and small scenes of SI values with tables
-changed.
-"""
+"""The scenes that tests share: the text of a scene file, and small scenes with tables changed."""
 
 import math
 from collections.abc import Mapping

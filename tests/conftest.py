@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What holds for every test: no store of the user, one thread of BLAS and one core for each process, and what
-Python has compiled is kept.
-
-No test reads or fills the store of the user: without SAMFEM_STORE there is none, and tests of the store name
-their own. `make test` shares the tests among processes, so that each has one thread unless the user asks for
-another number. Processes that tests start would each compile all libraries anew where the environment forbids
-Python to keep what it has compiled.
+"""What holds for every test: no store of the user (tests of the store name their own); one thread of BLAS for
+each process unless the user asks for another number, as `make test` shares the tests among processes; what
+Python has compiled is kept, as processes that tests start would each compile all libraries anew.
 """
 
 import os
@@ -35,17 +31,13 @@ settings.load_profile("fixed")
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Processes for `pytest -n auto`: the cores that this process may use, which can be fewer than the
-    machine has.
-    """
+    """Processes for `pytest -n auto`: the cores that this process may use, maybe fewer than there are."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @pytest.fixture(scope="session", autouse=True)
 def meshes_once():
-    """Each mesh of a run is read by a process of its own once: that takes half a second, and tests draw the
-    same.
-    """
+    """Each mesh of a run is read by a process of its own once: that takes half a second."""
     found, read = {}, meshes.read_apart
 
     def once(reader, path, *more, **how):

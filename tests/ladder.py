@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does,
-counted from outside.
+"""A ladder of scenes, from an elastic sphere to full running-in, and what a solve of each does.
 
 `climb` solves rungs, each in a fork of a process that has loaded the solvers and solved nothing, and tells
 what ran: kinds of work with their calls and sizes, and transforms by the work that they belong to. Nothing in

@@ -29,9 +29,7 @@ def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
 
 
 def over_inputs(**changed: History) -> Studied:
-    """As the paper says where the deviation of the layer is in the upper half; else nothing wears. changed:
-    other histories of materials.
-    """
+    """As the paper says where the deviation of the layer is in the upper half, or `changed`; else no wear."""
     shares, said, runs = design(UNIFORM, len(INPUTS), POINTS, 1), as_the_paper_says() | changed, {}
     deciding = [one.name for one in INPUTS].index("deviation")
     for point, case in np.ndindex(POINTS, len(NAMES)):

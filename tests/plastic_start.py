@@ -27,9 +27,7 @@ def begin(scene: Scene, extent: Callable[[Model], Extent] | None = None) -> tupl
 
 
 def shrink_first_box(monkeypatch, *, x: int, y: int, less: int, layers: int) -> None:
-    """Let every history begin on a smaller box: x, y: that begins so many cells later, and has `less` cells
-    less in each.
-    """
+    """Let every history begin on a box that begins x and y cells later, and is `less` cells narrower."""
     first = solution.first_extent
 
     def small(*arguments, **keys) -> Extent:

@@ -94,9 +94,5 @@ def derive() -> dict[str, dict[str, list]]:
     return table
 
 
-def main() -> None:
-    TABLE.write_text(as_text(derive()), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    TABLE.write_text(as_text(derive()), encoding="utf-8")

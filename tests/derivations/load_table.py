@@ -106,9 +106,5 @@ def as_text(table: dict[str, dict[str, list]]) -> str:
     return "{\n" + ",\n".join(blocks) + "\n}\n"
 
 
-def main() -> None:
-    TABLE.write_text(as_text(derive()), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    TABLE.write_text(as_text(derive()), encoding="utf-8")

@@ -10,7 +10,7 @@ from builders import RADIUS, SWIFT, scene as small_scene
 from scipy.sparse.linalg import aslinearoperator
 
 import fem_reference
-import fem_reference.spatial
+from fem_reference import spatial
 from fem_reference.axisymmetric import problem as plane
 from fem_reference.axisymmetric.model import axis_pressure, build
 from fem_reference.axisymmetric.planner import plan
@@ -159,21 +159,12 @@ def test_an_elastic_iteration_has_factors_of_its_own():
     ("model", "keys", "new_each_time", "count", "within", "also"),
     [
         (fem_reference, {}, (plane, "FEW", 1), "factorizations", 1e-8, "contact_radius_m"),
-        (
-            fem_reference.spatial,
-            IN_SPACE,
-            (problem, "SLOWER", 0),
-            "multigrid_setups",
-            1e-7,
-            "pressure_centroid_x_m",
-        ),
+        (spatial, IN_SPACE, (problem, "SLOWER", 0), "multigrid_setups", 1e-7, "pressure_centroid_x_m"),
     ],
     ids=["factors", "hierarchies"],
 )
 def test_what_is_kept_changes_no_result(monkeypatch, model, keys, new_each_time, count, within, also):
-    """Equal to what new factors, or a new hierarchy, in every iteration give, within equilibrium. About
-    two set-ups a step; the others are solved in some ten iterations with what is kept.
-    """
+    """Equal to what new factors, or a new hierarchy, in every iteration give; about two set-ups a step."""
     kept = model.solve(yielding(**keys))
     assert STEPS <= kept.cost[count] <= 3 * STEPS < kept.cost["newton_iterations"] <= 8 * STEPS
     assert 0 < kept.cost["linear_iterations"] <= 20 * kept.cost["newton_iterations"]

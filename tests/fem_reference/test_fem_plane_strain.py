@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The plane-strain model: line forces, full slip, yield, passes; what it
-refuses.
-"""
+"""The plane-strain model: line forces, full slip, passes; what it refuses."""
 
 import numpy as np
 import pytest
+from builders import STEEL, scene
 
 import fem_reference
 import fem_reference.spatial
@@ -13,11 +12,10 @@ from fem_reference.common.elasticity import mises, stiffness_tensor
 from fem_reference.common.far_field import flamant, stretched
 from fem_reference.plane_strain import UnsupportedScene, check, load_steps, plan, solve
 from fem_reference.plane_strain.recovery import stresses
-from sam.scene import Scene
 from verification.runs.models import FEM_LINE, cheapest_reference
 
 RADIUS, LENGTH, YOUNG, YIELD = 0.01, 0.02, 210e9, 400e6
-STEEL = {"young": YOUNG, "poisson": 0.3}
+CYLINDER = {"shape": "cylinder", "radius": RADIUS, "length": LENGTH}
 
 
 def force_of(pressure, modulus=YOUNG / 0.91):
@@ -26,47 +24,36 @@ def force_of(pressure, modulus=YOUNG / 0.91):
     return 0.5 * np.pi * a * pressure * LENGTH, a
 
 
-def line(ratio=1.0, *, cells=8, friction=0.0, slip=None, plasticity=None, path=None, **loading):
-    """A rigid cylinder on steel; ratio: largest pressure over YIELD."""
+def line(ratio=1.0, *, cells=8, box=None, friction=0.0, plasticity=None, path=None, **loading):
+    """A rigid cylinder on steel; ratio: largest pressure over YIELD; path: half of it in half-widths."""
     force, a = force_of(ratio * YIELD)
-    tables = {
-        "body": STEEL | ({"plasticity": plasticity} if plasticity else {}),
-        "counterbody": {"shape": "cylinder", "radius": RADIUS, "length": LENGTH},
-        "loading": {"force": force, **loading},
-        "fem": {"cells_per_radius": cells},
-    }
     if path is not None:
-        tables["loading"]["path"] = {"start": [-path * a, 0], "end": [path * a, 0], "step_per_radius": 2}
-        tables["counterbody"]["slip"] = 0.0 if slip is None else slip
-    if friction:
-        tables["friction"] = {"law": "constant", "coefficient": friction}
-    return Scene(**tables)
+        loading["path"] = {"start": [-path * a, 0], "end": [path * a, 0], "step_per_radius": 2}
+    return scene(
+        body={"plasticity": plasticity},
+        counterbody=CYLINDER | ({} if path is None else {"slip": 0.0}),
+        loading={"force": force, **loading},
+        friction=friction,
+        fem={"cells_per_radius": cells, **({} if box is None else {"box": box})},
+    )
 
 
 def test_line_force_stress():
-    """The strain of the displacements gives the one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r);
-    what line forces displace is zero at the datum.
-    """
-    body, (down, along), step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
+    """The one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r); no displacement at the datum."""
+    body, force, step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
     r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
     at = np.stack([r * np.sin(t), r * np.cos(t)])
-    slopes = [
-        (
-            flamant((down, along), body, at + shift[:, None], 5.0)
-            - flamant((down, along), body, at - shift[:, None], 5.0)
-        )
-        / (2 * step)
-        for shift in step * np.eye(2)
-    ]
+    ends = [[flamant(force, body, at + s[:, None], 5.0) for s in (way, -way)] for way in step * np.eye(2)]
+    slopes = [(after - before) / (2 * step) for after, before in ends]
     strain = np.stack([slopes[0][0], np.zeros(4), slopes[1][1], slopes[0][1] + slopes[1][0]])
     xx, yy, zz, xz = stiffness_tensor(3.0, 0.3) @ strain
-    radial = -2.0 * (down * np.cos(t) + along * np.sin(t)) / (np.pi * r)
+    radial = -2.0 * (force[0] * np.cos(t) + force[1] * np.sin(t)) / (np.pi * r)
     expected = radial * np.array([np.sin(t) ** 2, np.cos(t) ** 2, np.sin(t) * np.cos(t)])
     np.testing.assert_allclose([xx, zz, xz], expected, atol=1e-8)
     np.testing.assert_allclose(yy, 0.3 * radial, atol=1e-8)
     edge = np.array([[5.0, -5.0], [0.0, 0.0]])
-    assert np.abs(flamant((down, 0.0), body, edge, 5.0)[1]).max() < 1e-15
-    assert np.abs(flamant((0.0, along), body, edge, 5.0)[0]).max() < 1e-15
+    assert np.abs(flamant((2.0, 0.0), body, edge, 5.0)[1]).max() < 1e-15
+    assert np.abs(flamant((0.0, -0.7), body, edge, 5.0)[0]).max() < 1e-15
 
 
 def test_strain_far_away():
@@ -86,13 +73,9 @@ def test_strain_far_away():
 
 def test_two_cylinders():
     """NAFEMS R0094-1: steel cylinder on aluminium, half-width 6.2146 mm, largest pressure 3585.4 MPa."""
-    scene = Scene(
-        body={"young": 70e9, "poisson": 0.3},
-        counterbody={"shape": "cylinder", "radius": 0.05, "length": 1e-3, **STEEL},
-        loading={"force": 35e3},
-        fem={"box": 20, "cells_per_radius": 10},
-    )
-    result = solve(scene)
+    roller = {"shape": "cylinder", "radius": 0.05, "length": 1e-3, **STEEL}
+    tables = {"loading": {"force": 35e3}, "fem": {"box": 20, "cells_per_radius": 10}}
+    result = solve(scene(body={"young": 70e9}, counterbody=roller, **tables))
     found = [result.quantities[name] for name in ("contact_half_width_m", "p_max_Pa", "contact_area_m2")]
     assert found == pytest.approx([6.2146e-3, 3585.4e6, 2 * 6.2146e-6], rel=1e-3)
     assert result.status == "converged" and max(result.certificate.values()) < 1e-9
@@ -102,21 +85,13 @@ PERFECT = {"law": "perfect", "yield_stress": YIELD}
 KINEMATIC = PERFECT | {"kinematic": {"modulus": [20e9], "recovery": [0.0]}}
 
 
-def boxed(scene, box):
-    return scene.model_copy(update={"fem": scene.fem.model_copy(update={"box": box})})
-
-
-def elastic(cells, friction=0.0, box=40.0):
-    model, (step,) = load_steps(boxed(line(cells=cells, friction=friction), box))
-    return model, step.state
-
-
 def test_full_slip_is_askew():
     """With friction the pressure below a rigid cylinder is as (b + x)^(1/2 - k) (c - x)^(1/2 + k),
     tan(pi k) = mu (1 - 2 nu)/(2 (1 - nu)) (Johnson 1985, Sec. 8.2). On a half-width (1 - 4 k^2)^(-1/2) times
     Hertz's its middle lies 2 k and its resultant 8/3 k half-widths behind the apex.
     """
-    model, state = elastic(10, friction=0.8)
+    model, (step,) = load_steps(line(cells=10, box=40.0, friction=0.8))
+    state = step.state
     k = np.arctan(0.8 * 0.4 / 1.4) / np.pi
     start, end = model.edges(state)
     wide = 0.5 * (end - start)
@@ -141,13 +116,10 @@ def test_flow_does_not_lock():
 
 
 def test_far_field_of_plastic_strain():
-    """The residual stresses do not depend on the box: across every line x = const those along x, of a
-    symmetric section, have no resultant, and the largest is the same with half of the box.
-    """
+    """Residual stresses do not depend on the box, and those along x have no resultant on a line x = const."""
     found = []
     for box in (12.0, 24.0):
-        scene = boxed(line(3.0, cells=4, plasticity=PERFECT, steps=2, unload=True), box)
-        model, steps = load_steps(scene)
+        model, steps = load_steps(line(3.0, cells=4, box=box, plasticity=PERFECT, steps=2, unload=True))
         state = steps[-1].state
         assert steps[-1].unloads and not state.active.any() and state.residual < 1e-9
         s, height = stresses(model, state), np.repeat(np.diff(model.plan.z), 2) / 2.0
@@ -158,16 +130,14 @@ def test_far_field_of_plastic_strain():
 
 
 def test_rolling_leaves_a_track():
-    """A rolling cylinder: passes add less and less to a body with back-stresses; a result resumed after any
-    step is equal; nothing is left of an elastic body, whose contact moves with the apex.
-    """
-    scene = line(2.1, cells=4, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
+    """Passes add less and less; a resumed result is equal; an elastic contact moves with the apex."""
+    rolls = line(2.1, cells=4, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
     kept = []
-    result = solve(scene, checkpoint=kept.append)
+    result = solve(rolls, checkpoint=kept.append)
     assert result.status == "converged" and result.quantities["groove_deepest_m"] > 0.0
     first, second = result.tables["passes"]["new_strain_max"]
     assert 0.0 <= second < 0.5 * first
-    again = solve(scene, start=kept[-4])
+    again = solve(rolls, start=kept[-4])
     assert again.quantities == result.quantities
     model, steps = load_steps(line(1.0, cells=4, path=1.0))
     for step in steps:
@@ -183,18 +153,11 @@ def test_rolling_leaves_a_track():
     ],
 )
 def test_refused_by_name(tables, words):
-    """Every key that stands in the way, its value and what is allowed."""
-    given = {
-        "body": STEEL,
-        "counterbody": {"shape": "cylinder", "radius": RADIUS, "length": LENGTH},
-        "loading": {"force": force_of(10 * YIELD)[0]},
-    }
     with pytest.raises(UnsupportedScene, match=words):
-        check(Scene(**given | tables))
+        check(scene(**{"counterbody": CYLINDER} | tables))
 
 
 def test_other_models_refuse_a_cylinder():
-    """By its shape; the plane-strain model is the reference of a cylinder."""
     for package in (fem_reference, fem_reference.spatial):
         with pytest.raises(UnsupportedScene, match=r'counterbody\.shape = "cylinder"'):
             package.check(line())

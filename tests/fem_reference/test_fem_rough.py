@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, STEEL, SWIFT
+from builders import CHEMICAL_FILM, LINEAR, STEEL, SWIFT, scene
 from made_results import column
 from rounding import EPS, close
 
@@ -38,13 +38,8 @@ def rough(n=16, height=two_tops, *, side=SIDE, cells=None, **tables):
     sides = tuple(side * k / max(cells) for k in cells)
     x, y = (centres(k, length) for k, length in zip(cells, sides, strict=True))
     surface = {"kind": "file", "path": HeightMap(height(x[:, None], y[None, :]), sides)}
-    content = {
-        "counterbody": {"shape": "flat"},
-        "surface": surface,
-        "loading": {"force": 0.04},
-        "fem": {"box": 4},
-    }
-    return Scene(**content | tables | {"body": STEEL | tables.pop("body", {})})
+    content = {"counterbody": {"shape": "flat"}, "surface": surface, "fem": {"box": 4}}
+    return scene(**content | {"loading": {"force": 0.04}} | tables)
 
 
 def friction_map(values):
@@ -53,24 +48,12 @@ def friction_map(values):
 
 def test_a_map_on_a_smooth_body_is_the_constant():
     """The whole body with a map of one value against half of it: equal to the accuracy of the loop."""
-    content = {
-        "body": STEEL,
-        "counterbody": {"shape": "sphere", "radius": 105e-6},
-        "loading": {"force": 0.65},
-        "fem": {"cells_per_radius": 3, "box": 4},
-    }
+    fem, grid = {"cells_per_radius": 3, "box": 4}, {"cells": [4, 4], "extent": [20e-6, 20e-6]}
     values = FrictionMap(np.full((4, 4), 0.2), (20e-6, 20e-6))
-    half = spatial.solve(Scene(**content, friction={"coefficient": 0.2}))
-    grid = {"cells": [4, 4], "extent": [20e-6, 20e-6]}
-    whole = spatial.solve(Scene(**content, friction={"law": "map", "path": values}, grid=grid))
+    half = spatial.solve(scene(fem=fem, friction=0.2))
+    whole = spatial.solve(scene(fem=fem, friction={"law": "map", "path": values}, grid=grid))
     assert (half.discretisation["symmetry"], whole.discretisation["symmetry"]) == ("half, y >= 0", "none")
-    for name in (
-        "approach_m",
-        "p_max_Pa",
-        "pressure_centroid_x_m",
-        "friction_coefficient",
-        "contact_area_m2",
-    ):
+    for name in "approach_m p_max_Pa pressure_centroid_x_m friction_coefficient contact_area_m2".split():
         assert whole.quantities[name] == close(half.quantities[name], 1e-6)
 
 
@@ -117,7 +100,6 @@ def test_an_ellipsoid_over_a_rough_body_has_its_gap_and_slope_at_each_place():
 
 
 def test_the_map_is_read_where_the_nodes_are():
-    """A map that varies along y alone stays one along y."""
     values = np.repeat(np.linspace(0.1, 0.4, 12)[None, :], 12, axis=0)
     made = spatial.plan(rough(12, friction=friction_map(values)))
     patch = tuple(
@@ -163,12 +145,11 @@ WAVE = {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": 20 * CELL, "wave
 
 def sliding(counter=WAVE, *, path=PATH, plasticity=None) -> Scene:
     """A plane with a wave that slides three cells over 10 x 10."""
-    loading = {"force": 0.012, "steps": 1, "unload": True, "path": path}
-    return Scene(
-        body={**STEEL, "plasticity": plasticity},
+    return scene(
+        body={"plasticity": plasticity},
         counterbody={"shape": "flat", "surface": counter},
-        loading={name: value for name, value in loading.items() if value is not None},
-        friction={"coefficient": SLIDING},
+        loading={"force": 0.012, "steps": 1, "unload": True, "path": path},
+        friction=SLIDING,
         grid={"cells": (10, 10), "extent": (10 * CELL, 10 * CELL)},
         fem={"box": 4},
         solver={"tolerance": 1e-4},
@@ -192,7 +173,7 @@ def test_the_contact_is_that_of_a_counter_body_at_rest_with_those_heights():
 
 def test_a_body_that_yields_has_a_row_for_the_pass():
     """Every place counts as steady below a plane, which leaves no groove."""
-    law = {"law": "linear", "yield_stress": 0.5e9, "modulus": 10e9}
+    law = LINEAR | {"yield_stress": 0.5e9}
     result = spatial.solve(sliding(path=PATH | {"steps": 1}, plasticity=law))
     passes = result.tables["passes"]
     assert result.converged and passes["pass"] == [1] and np.isnan(passes["groove_m"]).all()
@@ -208,14 +189,8 @@ FEW, THICK = 6, 20e-9  # cells; m of the layer that may be removed in a cycle
 @cache
 def wearing(wear: bool = True) -> Scene:
     """A ball on few cells that yields below a rigid plane and slides."""
-    kinematic = {"modulus": (50e9,), "recovery": (50.0,)}
-    law = {
-        "law": "linear",
-        "yield_stress": 2e9,
-        "modulus": 5e9,
-        "kinematic": kinematic,
-        "layer_thickness": THICK,
-    }
+    law = LINEAR | {"yield_stress": 2e9, "modulus": 5e9, "layer_thickness": THICK}
+    law |= {"kinematic": {"modulus": (50e9,), "recovery": (50.0,)}}
     limits = {"strain_limit": np.inf, "strain_limit_layer": 0.004, "smoothing_window": 0}
     return rough(
         FEW,

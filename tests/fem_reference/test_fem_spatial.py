@@ -52,12 +52,6 @@ def film(h, ratio=80 / 210, strength=None, poisson=NU):
     return {"coating": coating}
 
 
-def equal_tables(first, second, names):
-    for name in names:
-        for column, values in first.tables[name].items():
-            np.testing.assert_array_equal(second.tables[name][column], values, f"{name} {column}")
-
-
 def test_alternating_cycles_are_mirror_images():
     """The second cycle of alternating friction is the first with x reversed (tolerance of the loop)."""
     model = build(plan(scene(3, 0.4, direction="alternating", cycles=2)))
@@ -94,14 +88,12 @@ def test_a_load_that_travels():
     ],
 )
 def test_what_is_refused(made, words):
-    """The reasons name key, value and what is allowed."""
     for asked in (spatial.check, spatial.solve):
         with pytest.raises(spatial.UnsupportedScene, match=words):
             asked(made)
 
 
 def test_statuses():
-    """Too few elements in the contact; no force at all."""
     assert spatial.solve(scene(2)).status == "under-resolved"
     empty = spatial.solve(scene(force=0.0))
     assert empty.converged and empty.quantities["p_max_Pa"] == 0.0
@@ -229,14 +221,13 @@ def test_the_steps_are_those_of_sam(turns, back):
 
 
 def test_resumed_passes_are_equal_and_hold_what_results_read():
-    """Two passes, resumed inside the second one: equal to the last digit. Of the states inside a pass only
-    those that a step begins from have displacements; the history is that of all states.
-    """
+    """Of the states inside a pass only those that a step begins from have displacements."""
     made, records = moving(0.4, 1, unload=True, cycles=2, steps=1, box=3.0), []
     whole = spatial.solve(made, checkpoint=records.append)
-    equal_tables(
-        whole, spatial.solve(made, start=records[-3]), ("history", "passes", "track", "cross", "line")
-    )
+    resumed = spatial.solve(made, start=records[-3])
+    for name in ("history", "passes", "track", "cross", "line"):
+        for column, values in whole.tables[name].items():
+            np.testing.assert_array_equal(resumed.tables[name][column], values, f"{name} {column}")
     assert all(list(whole.tables[name]) == list(COLUMNS[name]) for name in ("track", "cross", "passes"))
     model, steps = spatial.load_steps(made, records[-1])
     held = [bool(step.state.u.size) for step in steps]
@@ -250,7 +241,6 @@ def test_resumed_passes_are_equal_and_hold_what_results_read():
 
 
 def test_multigrid_is_deterministic_and_symmetric():
-    """The approximate inverse is symmetric, and twice the same."""
     line = two_sided(-1.0, 1.0, 0.25, 5.0)
     solid = HexSolid(block(Lines(line, line[line >= 0], line[line >= 0], True)), Elastic(1.0, 0.3))
     mesh = solid.basis.mesh

@@ -49,7 +49,6 @@ def test_area_below_a_punch_and_up_to_the_edge_of_the_grid_is_that_of_the_cells(
 
 
 def test_the_certificate_describes_the_returned_field():
-    """Gap, penetration and load recomputed from the pressure alone, by a direct sum over all cells."""
     contact, gap0, h = sphere(25)
     coefficients = h * 2 * displacement_coefficients(Lags(25, 25, 1.0, 1.0), nu=0.0)  # E* = 1
     i = np.arange(25)
@@ -173,7 +172,6 @@ def test_six_cells_across_resolve_a_contact(width, enough):
 
 
 def direct_sum(kernel, signs, field, source, observed):
-    """Sum over source cells of K[observed - source] f, cell by cell."""
     out = np.zeros(observed.shape)
     for i, j in np.ndindex(*observed.shape):
         for k, m in np.ndindex(*source.shape):
@@ -209,7 +207,6 @@ def test_equals_the_direct_sum(source, observed):
 
 
 def test_stresses_are_sums_of_coefficients_over_cells():
-    """Of a pressure and of a traction, on cells of any size."""
     rng, window, depths = np.random.default_rng(6), Window(0, 0, 5, 4), np.array([0.0, 0.7, 2.0])
     loads = {3: rng.normal(size=(5, 4)), 1: rng.normal(size=(5, 4))}
     found = stresses(loads, (2.0, 1.5), depths, window, nu=0.3)
@@ -364,11 +361,7 @@ BY_BOTH = pytest.mark.parametrize("short", [0, 10**4], ids=["transforms", "produ
 @pytest.mark.parametrize("between", [False, True])
 @pytest.mark.parametrize("n, half", [(1, 3), (6, 6), (9, 6), (40, 45)])
 def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
-    """Along both axes, with fewer and with more values than are taken.
-
-    1e-13: the sums that it is held against turn by up to 40 pi, so a term has 126 roundings, and 40 terms are
-    added.
-    """
+    """1e-13: the sums beside it turn by up to 40 pi, 126 roundings a term, and add 40 terms."""
     monkeypatch.setattr(convolution, "SHORT", short)
     kept = np.random.default_rng(n).standard_normal((2, n, n))
     if odd and not between:
@@ -384,10 +377,8 @@ def test_forward_is_the_fourier_sum(monkeypatch, odd, between, n, half, short):
 @pytest.mark.parametrize("odd", [False, True])
 @pytest.mark.parametrize("n", [1, 2, 9, 10])
 def test_back_is_the_inverse(monkeypatch, odd, n, short):
-    """Of a row of n cells from its middle outward, but for what an odd one has in the middle cell.
-
-    Two sums, of the values and of their transforms, neither larger than twice the sum of the moduli. Single
-    precision stays single.
+    """From the middle of a row outward, but for what an odd one has there. Two sums, of the values and of
+    their transforms, neither larger than twice the sum of the moduli.
     """
     monkeypatch.setattr(convolution, "SHORT", short)
     half, kept, between = half_length(n) + 3, n - n // 2, n % 2 == 0

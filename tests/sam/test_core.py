@@ -130,9 +130,7 @@ def test_radius_of_a_contact_that_yields():
 
 
 def test_radius_with_hardening():
-    """Swift steel: the yield stress is taken at Tabor's strain, 0.2 a/R; a given pressure keeps its radius.
-    None is below that of Hertz: just above first yield the cavity would carry more.
-    """
+    """The yield stress is that at Tabor's strain, 0.2 a/R; no radius is below that of Hertz."""
     body = {"plasticity": SWIFT_LAW}
     slope = (0.75 * 4.0 / (210e9 / 0.91) * 1e-4) ** (1 / 3) / 1e-4
     limit = 945e6 * (20 + 1e6 * 0.2 * slope) ** 0.121
@@ -323,9 +321,7 @@ def step_of_the_paper(elastic: np.ndarray, relaxes: float, tolerance: float) -> 
 
 @pytest.mark.parametrize("beyond", [5e-4, 0.3])
 def test_the_paper_s_loop_relaxes_a_cell(beyond):
-    """A cell that relaxes by 2 mu of its strain is on the yield surface after one return, by 3/2 (q - Y)/(3
-    mu) s/q; one that nothing relaxes is left with its excess.
-    """
+    """By 2 mu of its strain: one return of 3/2 (q - Y)/(3 mu) s/q; by nothing: the excess stays."""
     trial = step_of_the_paper(1e9 * (1 + beyond) * AXIAL, 2 * 80e9, 1e-8)
     length = trial.increment.peeq
     assert trial.converged and length == pytest.approx(beyond * 1e9 / (3 * 80e9), rel=1e-9)
@@ -417,9 +413,7 @@ def test_stress_on_a_face_is_extrapolated_from_its_elements():
 
 @pytest.mark.parametrize("strained", [0.0, 1e-3])
 def test_what_has_yielded_gives_its_own_stress(strained):
-    """Over depth the top of a parabola, but the largest value as it is where that has yielded; in an
-    axisymmetric and in a three-dimensional body whose stress is larger on the axis than in any element.
-    """
+    """Else the top of a parabola over depth, and the stress on the axis, larger here than in any element."""
     z, q = np.array([0.1, 0.2, 0.3, 0.4]), np.array([0.6, 0.9, 1.0, 0.3])
     peak = SimpleNamespace(mises=q[:, None], flowed=np.full((4, 1), strained > 0))
     depth, largest = tables.largest_mises(z, peak)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line contact: coefficients of plane strain against quadrature, images, and balance of forces; a
-cylinder against the closed form of full slip, and itself on other grids.
-"""
+"""A line contact: coefficients of plane strain, images, balance of forces, and a cylinder in full slip."""
 
 from itertools import pairwise
 
@@ -24,7 +22,6 @@ PLANE = [STRESS.index(name) for name in ("11", "22", "33", "13")]
 
 
 def between(low, high):
-    """Gauss points and weights."""
     return (low + high) / 2 + (high - low) / 2 * NODES, (high - low) / 2 * WEIGHTS
 
 
@@ -77,9 +74,7 @@ def test_strain_moves_the_surface_as_its_work_on_a_line_force_says(component):
 
 
 def test_residual_stress_of_a_section_balances_and_strain_along_the_line_acts_as_its_poisson_effect():
-    """No force crosses a vertical cut (inside and outside of the section), no traction the surface; e_yy is
-    nu (e_xx + e_zz) in the plane, and adds -E e_yy to the stress along y.
-    """
+    """No force crosses a vertical cut, no traction the surface; e_yy acts by its Poisson effect."""
     cuboids = Cuboids(LINE, (0.5, 2.0), NU)
     parts = [between(0.0, 0.5), between(0.5, 2.0)] + [between(2.0**k, 2.0 ** (k + 1)) for k in range(1, 14)]
     z, w = (np.concatenate(each) for each in zip(*parts, strict=True))
@@ -155,19 +150,18 @@ def test_a_pass_back_leaves_the_mirror_image_of_one_forth():
     assert back["uz_m"][::-1] == pytest.approx(forth["uz_m"], abs=1e-3 * np.max(forth["uz_m"]))
 
 
+def layer(lags: Lags) -> Cuboids:
+    return Cuboids(lags, (0.0, 0.6), NU)
+
+
 PERIOD, IMAGES = 4, 300
 ODD = ODD_Y.astype(bool)
+ODD_BOTH = np.not_equal.outer(ODD, ODD)
 COEFFICIENTS = {
     "displacement": (lambda lags: displacement_coefficients(lags, NU), np.array(False)),
     "stress": (lambda lags: stress_coefficients(lags, 0.4, NU, load=1)[:, 0], ODD),
-    "strained surface": (
-        lambda lags: surface_displacement_coefficients(Cuboids(lags, (0.0, 0.6), NU))[:, 0],
-        ODD,
-    ),
-    "residual stress": (
-        lambda lags: residual_stress_coefficients(Cuboids(lags, (0.0, 0.6), NU), 0.3)[:, :, 0, 0],
-        np.not_equal.outer(ODD, ODD),
-    ),
+    "strained surface": (lambda lags: surface_displacement_coefficients(layer(lags))[:, 0], ODD),
+    "residual stress": (lambda lags: residual_stress_coefficients(layer(lags), 0.3)[:, :, 0, 0], ODD_BOTH),
 }
 
 

@@ -144,7 +144,7 @@ def test_harmonic_dilatation_moves_the_surface_by_hand():
 
 
 def wavy(**edits) -> Scene:
-    """A patch of one wave of steel that yields, under a flat."""
+    """A patch of one wave of steel that yields, under a flat; edits: keys of tables."""
     tables = {
         "body": {"young": 210e9, "poisson": NU, "plasticity": {"law": "perfect", "yield_stress": 1e9}},
         "counterbody": {"shape": "flat"},
@@ -153,10 +153,7 @@ def wavy(**edits) -> Scene:
         "grid": {"cells": (16, 8), "extent": (16e-6, 8e-6), "periodic": "xy", "layers": 6, "depth": 6e-6},
         "solver": {"tolerance": 1e-4},
     }
-    return Scene(
-        **{name: table | edits.get(name, {}) for name, table in tables.items()}
-        | {name: table for name, table in edits.items() if name not in tables}
-    )
+    return Scene(**{name: table | edits.get(name, {}) for name, table in tables.items()})
 
 
 def test_a_wave_at_the_border_yields_like_one_in_the_middle():
@@ -203,16 +200,15 @@ def test_what_a_periodic_patch_cannot_have(edits, words):
 
 
 def test_an_approach_is_less_than_the_mean_gap():
-    scene = wavy(solver={})
-    elastic = {"body": {"young": 210e9, "poisson": NU}, "loading": {"approach": 0.9e-7}}
-    tables = (
-        scene.model_dump() | elastic | {"grid": {"cells": (16, 8), "extent": (16e-6, 8e-6), "periodic": "xy"}}
-    )
-    result = sam.solve(Scene(**tables))
-    again = Scene(**tables | {"loading": {"force": result.quantities["force_N"]}})
+    def pressed(**loading):
+        loading = {"mean_pressure": None, **loading}
+        return wavy(body={"plasticity": None}, loading=loading, grid={"layers": None, "depth": None})
+
+    result = sam.solve(pressed(approach=0.9e-7))
+    again = pressed(force=result.quantities["force_N"])
     assert sam.solve(again).quantities["approach_m"] == pytest.approx(0.9e-7, rel=1e-6)
     with pytest.raises(sam.UnsupportedScene, match=r"loading.approach = 1e-07 m: .*less than 9.808e-08 m"):
-        sam.solve(Scene(**tables | {"loading": {"approach": 1e-7}}))
+        sam.solve(pressed(approach=1e-7))
 
 
 def test_spots_go_on_across_the_border():

@@ -38,22 +38,15 @@ def swift4():
     return result
 
 
-def test_converged_in_every_cell(swift4):
-    """Both residuals below the tolerance, contact checked on the full grid, nothing yields outside the box;
-    a budget of work: a counter, not seconds (measured 25).
-    """
-    certificate = swift4.certificate
-    assert swift4.status is Status.CONVERGED and swift4.cost["operator_applications"] <= 32
-    assert certificate["yield_excess"] <= 1e-6 and certificate["flow_residual"] <= 1e-6
-    assert certificate["yield_excess_outside_box"] == 0.0
-    assert certificate["gap_in_contact"] < 2e-8 and certificate["penetration"] < 2e-8
-    assert certificate["load_error"] < 1e-12
-
-
 def test_stress_is_on_the_yield_surface_where_it_strained(swift4):
-    """Table against the law: where the axis yielded and does so at the peak, each point of a cell has its
-    yield stress; the mean of their stresses is within that of their mean strain, by less than 0.2 %.
+    """Each point of a cell has its yield stress; the mean of their stresses is within that of their mean
+    strain, by less than 0.2 %. A budget of work: a counter, not seconds (measured 25).
     """
+    assert swift4.status is Status.CONVERGED and swift4.cost["operator_applications"] <= 32
+    certificate = swift4.certificate
+    assert certificate["yield_excess"] <= 1e-6 and certificate["flow_residual"] <= 1e-6
+    assert certificate["yield_excess_outside_box"] == 0.0 and certificate["load_error"] < 1e-12
+    assert certificate["gap_in_contact"] < 2e-8 and certificate["penetration"] < 2e-8
     axis = {name: np.asarray(column) for name, column in swift4.tables["axis"].items()}
     peak = axis["state"] == "peak"
     curve = Swift(945e6, 20, 0.121)
@@ -73,9 +66,7 @@ def test_the_body_is_of_cells_of_the_grid(swift4):
 
 
 def test_one_and_a_half_times_the_yield_stress_is_elastic():
-    """First yield is at 1.6128: no operator is built, and the answer is that of the elastic solver bit for
-    bit.
-    """
+    """First yield is at 1.6128: no operator is built, and the answer is the elastic one bit for bit."""
     a_scene = yielding(1.5, grid=FEW)
     result = sam.solve(a_scene)
     assert result.quantities["peeq_max"] == 0.0 and result.cost["operator_applications"] == 0
@@ -117,9 +108,7 @@ def test_unloading_in_steps_takes_equal_parts_of_the_force():
 
 @pytest.mark.parametrize("stop", ["stress", "strain"])
 def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
-    """One load step leaves the stress inside the yield surface, and a flow-rule residual of percents. Below
-    yield, at p0 = Y, the loops end at once without a strain.
-    """
+    """One load step leaves a flow-rule residual of percents. Below yield the loops end without a strain."""
     solver = {"method": "paper", "stop": stop, "tolerance": 1e-4}
     given = yielding(4, loading={"unload": False}, grid=SMALL, solver=solver)
     wrong = sam.solve(given)
@@ -132,7 +121,6 @@ def test_the_papers_loops_meet_yield_but_not_the_flow_rule(stop):
 
 
 def test_a_step_too_large_is_cut(monkeypatch):
-    """With few iterations allowed, one step of perfect plasticity is cut until it converges, and says so."""
     monkeypatch.setattr(plastic_step, "ITERATIONS", 8)
     result = sam.solve(yielding(2.5, PERFECT, grid=SMALL))
     assert result.status is Status.CONVERGED and result.cost["step_cuts"] >= 1
@@ -194,7 +182,6 @@ def test_a_chosen_grid_grows_with_the_load_at_the_same_cell_size():
         (None, Sides(True, True), Room(RATIO, RATIO)),
         (SMALL, Sides(beside=True), None),
         (SMALL, Sides(below=True), Room(1.0, RATIO)),
-        ({"extent": (1e-4, 1e-4)}, Sides(beside=True), None),
         ({"layers": 6, "depth": 1e-4}, Sides(True, True), None),
         ({"layers": 6, "depth": 1e-4}, Sides(beside=True), Room(RATIO, 1.0)),
     ],
@@ -250,9 +237,7 @@ def rough(plasticity=RUN_IN_STEEL, force=0.12, depths=None, **tables) -> Scene:
 
 
 def test_the_layers_below_a_rough_body_go_as_deep_as_a_point_load_yields():
-    """Deeper with the load, at the same layers above, with faces at the kinks of the yield stress, and not
-    beyond half of the patch.
-    """
+    """With faces at the kinks of the yield stress, and not beyond half of the patch."""
     profile = ((0.0, 0.6), (0.3e-6, 1.0), (5e-6, 1.0))
     layered = RUN_IN_STEEL | {"profile": profile, "layer_thickness": 0.5e-6, "layer": LINEAR}
     small, large, endless = (choose_grid(rough(layered, force)).faces for force in (0.06, 0.24, 1e3))

@@ -45,16 +45,13 @@ def product(one, other) -> tuple[int, int]:
 
 
 def direct_sum(kernel, sign, field):
-    """Sum over the source cells of one layer, with the sign of the lag."""
     lx, ly = (np.arange(n)[:, None] - np.arange(n) for n in (NX, NY))
     signs = np.where(lx < 0, sign[0], 1)[:, :, None, None] * np.where(ly < 0, sign[1], 1)
     return np.einsum("ikjm,km->ij", kernel[np.abs(lx)[:, :, None, None], np.abs(ly)] * signs, field)
 
 
 def test_equals_direct_summation_on_uneven_layers():
-    """Residual stress, that of a pressure and of a traction, and the surface: 1e-12 of the largest value
-    (measured 5e-16).
-    """
+    """Stress of strain, pressure and traction, and the surface: 1e-12 of the largest (measured 5e-16)."""
     rng = np.random.default_rng(0)
     strain, pressure = rng.standard_normal((6, LAYERS, NX, NY)), rng.standard_normal((NX, NY))
     traction = rng.standard_normal((NX, NY))
@@ -82,11 +79,8 @@ def test_equals_direct_summation_on_uneven_layers():
 
 
 def test_cell_means_are_means():
-    """Against 6 x 6 x 6 Gauss points over the observed cell.
-
-    Next to the source its edges make the field logarithmic: two points a direction leave 5 % there (which
-    moves the largest plastic strain of a contact by less than 1e-4). Beyond the near field these
-    leave 1e-3 of the value.
+    """Against 6 x 6 x 6 Gauss points. Next to the source its edges make the field logarithmic: two points a
+    direction leave 5 % there (less than 1e-4 of the largest plastic strain of a contact), beyond it 1e-3.
     """
     t, w = (each / 2 for each in np.polynomial.legendre.leggauss(6))
     mean = 0.0
@@ -118,9 +112,7 @@ def of_box(exchange=False):
 
 
 def test_coefficients_are_taken_from_files_that_are_whole(tmp_path, monkeypatch):
-    """Bit by bit as they were made; a file that is cut, changed or of something else is made again, and none
-    is touched without a store.
-    """
+    """Bit by bit as they were made; what is cut, changed or of something else is made again."""
     made, few = of_box().layers, of_box(exchange=True).layers
     monkeypatch.setattr(BoxSpectra, "_dense", lambda *_: pytest.fail("made again"))
     with pytest.raises(pytest.fail.Exception):
@@ -286,9 +278,7 @@ MATERIALS = {
 
 @pytest.mark.parametrize("name", MATERIALS)
 def test_two_steps_end_on_the_yield_surface_of_each_point(name):
-    """Cells that relax by 2 mu of their strain: at the fixed point each point that flows has its yield
-    stress, the mean over the points is the strain of the cell, and the same load again strains nothing.
-    """
+    """Cells relax by 2 mu of their strain; the mean over the points is the strain of the cell."""
     material, load = MATERIALS[name], deviator(smooth())
     state = virgin(material)
     for size in (1.0, 1.5, 1.5):
@@ -317,7 +307,6 @@ def test_two_steps_end_on_the_yield_surface_of_each_point(name):
 
 
 def virgin(material) -> CellFields:
-    """Two layers of cells that never yielded."""
     return CellFields(~every((2, *CELLS)), material.virgin((POINTS, 0)))
 
 
@@ -365,9 +354,7 @@ def test_own_stress_is_the_answer_of_a_cell_to_its_own_strain():
 
 
 def test_the_preconditioner_solves_a_cell_that_flows_by_itself():
-    """One cell of perfect plasticity, whose own strain lowers its stress by another stiffness in each part:
-    an error across the flow is gone after one iteration, to second order.
-    """
+    """Perfect plasticity, a stiffness for each part: an error across the flow is gone to second order."""
     m, limit, own = 1.0, np.full(1, 0.3), np.array([[1.6], [0.9], [0.1], [0.1], [1.6]])
     solution = np.array([0.0, 0, 0, 0, 2.0, 0]).reshape(6, 1)  # a shear 13
 

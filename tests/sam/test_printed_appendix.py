@@ -209,10 +209,8 @@ def derivative(function: str, indices: tuple[int, ...]) -> float:
 
 
 def misses(rows, axes: tuple[int, ...], printed: str = "") -> list[tuple]:
-    """The rows whose d_1 d_2 d_3 is not the derivative that they are the triple integral of.
-
-    By differences over eight corners with sixty digits, of which the division by (2 STEP)^3 leaves 25; their
-    error is of the order STEP^2.
+    """The rows whose d_1 d_2 d_3 is not the derivative that they are the triple integral of: by differences
+    with sixty digits, of which the division by (2 STEP)^3 leaves 25; their error is of the order STEP^2.
     """
     total: dict = {}
     with mp.workdps(60):
@@ -417,10 +415,8 @@ def test_stress_of_a_nucleus(column):
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_signs_of_the_conjugate_gradients(sign):
-    """Eq. 10 with d_k where it is missing: p and r step by -alpha d, which goes with d = +r + beta d.
-
-    With the printed d = -r + beta d (sign -1) the directions are not conjugate, and eight steps do not
-    solve eight equations.
+    """With d_k where it is missing; with the printed d = -r + beta d (sign -1) the directions are not
+    conjugate, and eight steps do not solve eight equations.
     """
     root = np.random.default_rng(2).standard_normal((8, 8))
     matrix, right = root @ root.T + 8 * np.eye(8), np.ones(8)

@@ -225,7 +225,6 @@ body.plasticity.layer = 3 -> = & a table
 $FILM -> body.plasticity.layer & not together with [body.coating]
 ## LAYER body.plasticity.layer.
 law = 'voce' -> = & "swift", "linear"
-modulus = '1 GPa' -> = & takes B, C, n, alpha: remove it
 profile = 'p.csv' -> @profile & unknown key
 layer_thickness = '1 um' -> @layer_thickness & unknown key, did you mean body.plasticity.layer_thickness
 -B; -C; -n; law = 'table'; file = 'curve.csv' -> = & line 3 & softening is not available
@@ -293,7 +292,6 @@ renew = true -> = & did you mean counterbody.surface.renew?
 surface = 'map.csv' -> = & a table
 ## WAVE counterbody.surface.
 amplitude = '0 um' -> = & from 1e-30 to 1e+30 m
-seed = 1 -> = & takes amplitude, wavelength_x, wavelength_y: remove it
 wavelength_x = '1 um' -> grid.cells & in the shortest wavelength
 ## RENEWED counterbody.surface.
 renew = 1 | 'each' | [true] -> = & true or false
@@ -332,12 +330,10 @@ counterbody.surface = {kind = 'file', path = 'map.csv'}; grid.extent = ['48 um',
     -> counterbody.surface.path & cells of 2e-06 m x 1e-06 m, as those of the body; it has 1e-06 m x 1e-06 m
 counterbody.surface.cutoff_short = '1.5 um' -> grid.cells & in the shortest wavelength
 ## KINEMATIC body.plasticity.kinematic.
-modulus = [] | '1 GPa' -> = & $LIST
 modulus = ['1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa', '1 GPa'] \
     -> @modulus = ["1 GPa", " & $LIST
 modulus = ['1 GPa', '2 um'] | ['1 GPa', '-2 GPa'] | ['1 GPa', '2'] | ['1 GPa', true] \
     -> @modulus[1] & a pressure as a string
-recovery = [300] -> = & as many numbers as modulus has: 2
 recovery = 300 | [] -> = & $LIST
 recovery = [-1, 0] | ['1', 0] | [nan, 0] | [100000000.0, 0] | [[300, 0], 1] -> @recovery[0] & $RECOVERY
 """

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from builders import LINEAR, STEEL, scene
+from made_results import column
 
 from sam import UnsupportedScene, left_out, plan, solve
 from sam.contact.convolution import Counters
@@ -48,10 +49,6 @@ def pressed(counterbody, surface=None, **tables) -> Scene:
     return scene(counterbody=counterbody, surface=surface, grid=grid, loading=loading, **tables)
 
 
-def column(result, table: str, name: str) -> np.ndarray:
-    return np.asarray(result.tables[table][name])
-
-
 def test_a_pit_below_a_punch_carries_nothing():
     """The profile of a punch stays: cells beside it cannot touch, whatever the heights."""
     pit, punch = lambda x, y: -1e-6 * ((x**2 + y**2) < (2e-6) ** 2), {"shape": "punch", "radius": 6e-6}
@@ -77,7 +74,7 @@ def test_a_contact_at_the_edge_is_a_warning_and_its_border_does_not_count():
     p = column(result, "surface", "p_Pa").reshape(n, n)
     assert result.status is Status.CONVERGED and "the outer 6 x 6 cells do not count" in result.warnings[-1]
     assert result.quantities["p_max_Pa"] == p[6:-6, 6:-6].max() < 0.8 * p.max()
-    assert column(result, "history", "p_max_Pa")[-1] == result.quantities["p_max_Pa"]
+    assert result.tables["history"]["p_max_Pa"][-1] == result.quantities["p_max_Pa"]
 
 
 def test_small_spots_and_short_waves_are_warned_of():

@@ -2,7 +2,6 @@
 """Running-in of a small rough patch in SAM: chemical film, wear and cycles, each against another count."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -16,39 +15,36 @@ from sam.contact.operators import SurfaceOperators
 from sam.plasticity import history
 from sam.scene import FrictionMap
 from sam.scene.surface import border_cells, heights, mean_deviation, with_relief
-from verification.cost.plan import plan
 
 CELL = (16e-6 / 24) ** 2
-
-
-@cache
-def solved(**keys):
-    return sam.solve(running_in(counterbody=STEEL, **keys))
 
 
 def surface(result, state: str, name: str) -> np.ndarray:
     return column(result, "surface", name, state).reshape(24, 24)
 
 
-def stages(scene) -> dict[str, bool]:
-    """Stage -> whether it runs."""
-    return {entry["stage"]: entry["runs"] for entry in plan(scene).content["models"][0]["stages"]}
+@pytest.fixture
+def seen(monkeypatch) -> list:
+    """The model, the record before it, the trial and the film of each step that is taken."""
+    found, committed = [], history.committed
+
+    def watched(*step):
+        found.append(step)
+        return committed(*step)
+
+    monkeypatch.setattr(history, "committed", watched)
+    return found
 
 
 def test_a_limit_out_of_reach_is_no_wear():
-    """Plain cyclic contact: an infinite limit and one that is never reached leave what none does, bit by bit;
-    a later cycle adds little of the first, as Swift steel hardens.
-    """
-    none, inf, high = (solved(cycles=2, wear=wear) for wear in (None, float("inf"), 999.0))
-    assert inf.tables["cycles"] == none.tables["cycles"]
-    assert inf.tables["cycles"]["wear_volume_m3"] == [0.0] * 2
+    """Bit by bit; a later cycle adds little of the first, as Swift steel hardens."""
+    none, high = (sam.solve(running_in(counterbody=STEEL, wear=wear)) for wear in (None, 999.0))
+    assert none.tables["cycles"]["wear_volume_m3"] == [0.0] * 2
     cycles = high.tables["cycles"]
     margins = cycles.pop("margin_to_limit")
     assert margins == [pytest.approx(1 - peeq / 999) for peeq in cycles["peeq_max"]]
     assert none.tables["cycles"].pop("margin_to_limit") == [None] * 2
     assert cycles.pop("roofed_volume_m3") == [0.0] * 2 and cycles == none.tables["cycles"]
-    left_out = [any(entry.stage == "worn geometry" for entry in each.left_out) for each in (inf, high)]
-    assert left_out == [True, False] and not stages(running_in(wear=float("inf")))["worn geometry"]
     scene = running_in(counterbody=STEEL, wear=None)
     side, x = (16e-6, 16e-6), ((np.arange(24) + 0.5) / 24 - 0.5) * 16e-6
     h = heights(scene.surface, x, x, side)
@@ -62,9 +58,7 @@ def test_a_limit_out_of_reach_is_no_wear():
 
 @pytest.mark.parametrize("fills", [False, True])
 def test_the_wear_of_a_cycle_is_the_sum_of_its_parts(fills):
-    """Below a layer that never wears: without a filter what is under the roof, and the roof; all is gone that
-    is beyond its limit. The filter as printed keeps that volume, and raises the surface.
-    """
+    """Below a layer that never wears: under the roof, and the roof. The printed filter keeps that volume."""
     wear = {"strain_limit": 0.002, "strain_limit_layer": float("inf"), "interpolate": False}
     wear |= {"smoothing_window": 5 * fills, "smoothing_fills": fills, "roof": "falls"}
     steel = SWIFT | {"layer_thickness": 0.2e-6, "layer": SWIFT}
@@ -91,15 +85,8 @@ def test_local_friction_of_a_map_acts_where_it_is():
     assert found.quantities["friction_coefficient"] == pytest.approx(0.1 + 0.3 * share, rel=1e-12)
 
 
-def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_leaves(monkeypatch):
+def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_leaves(seen):
     """Made again from its beginning with the film at its end, where no further cell fails."""
-    seen, committed = [], history.committed
-
-    def watched(model, now, trial, film):
-        seen.append((model, now, trial, film))
-        return committed(model, now, trial, film)
-
-    monkeypatch.setattr(history, "committed", watched)
     sam.solve(running_in(film=FILM, wear=None, cycles=1))
     failing = [each for each in seen if each[3].film.failed.sum() > each[1].tribofilm.film.failed.sum()]
     for model, now, trial, film in failing:
@@ -109,19 +96,11 @@ def test_a_step_in_which_the_film_fails_is_the_step_with_the_friction_that_it_le
     assert failing and any(trial.plastic for _, _, trial, _ in failing)
 
 
-def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(monkeypatch):
-    """With low = 0 a film that is whole again leaves no traction: the contact is that of the same surface
-    without friction, though unlike bodies were coupled by the traction where it had failed.
-    """
-    seen, committed = [], history.committed
-
-    def watched(model, now, trial, film):
-        seen.append((model, now.extent, trial, film))
-        return committed(model, now, trial, film)
-
-    monkeypatch.setattr(history, "committed", watched)
+def test_a_new_film_without_friction_forgets_the_traction_of_the_cycle_before(seen):
+    """With low = 0 the contact is that without friction, though the traction of unlike bodies coupled it."""
     sam.solve(running_in(film=FILM | {"low": 0.0}, wear=None, cycles=1))
-    model, extent, trial, film = next(each for each in reversed(seen) if each[2].load.force)
+    model, now, trial, film = next(each for each in reversed(seen) if each[2].load.force)
+    extent = now.extent
     assert film.film.failed.any()
 
     def pressure(source) -> np.ndarray:

@@ -78,23 +78,11 @@ def test_files_that_cannot_be_read_as_text(folder, samfem):
 
 
 def test_all_errors_of_a_file_are_reported_at_once():
-    text = """
-[body]
-yuong = "210 GPa"
-poisson = 0.7
-[body.coating]
-thickness = "1 um"
-[counterbody]
-shape = "sphere"
-radius_x = "3 s"
-young = "1 GPa"
-[loading]
-force = 1.0
-unload_steps = 0
-[wear]
-"""
+    keys = """body.yuong = "210 GPa"; body.poisson = 0.7; body.coating.thickness = "1 um"; wear = {}
+        counterbody.shape = "sphere"; counterbody.radius_x = "3 s"; counterbody.young = "1 GPa"
+        loading.force = 1.0; loading.unload_steps = 0"""
     with pytest.raises(SceneError) as caught:
-        parse_scene(text.encode(), "many.toml")
+        parse_scene(keys.replace("; ", "\n").encode(), "many.toml")
     keys = [problem.key for problem in caught.value.problems]
     expected = """
         body.coating body.coating.poisson body.coating.young body.poisson body.yuong

@@ -109,9 +109,7 @@ WAYS = {
     "names without units": ("h.csv", text(names=list("xyz")), UNIT),
     "no names, spaces": ("h.xyz", text(names=False, sep=" "), UNIT),
     "semicolons, decimal commas": ("h.txt", text(names=NAMES, sep=";", decimal=","), ""),
-    "tabs": ("h.dat", text(sep="\t"), ""),
     "spaces, decimal commas": ("h.txt", text(names=False, sep=" ", decimal=","), UNIT),
-    "rows along y": ("h.csv", text(ROWS.sort_values(["y_um", "x_um"])), ""),
     "matrix of savetxt": ("h.txt", text(MATRIX, False, sep=" "), SIDES),
     "matrix below words": ("h.csv", text(MATRIX, [f"{k}.1.2026" for k in range(12)]), SIDES),
     "matrix with coordinates": ("h.csv", MATRIX[::-1].to_csv(index_label="y"), SIDES),
@@ -295,9 +293,7 @@ def test_a_file_without_a_size_a_unit_or_sense_is_refused(library, formats, cont
 
 
 def test_a_scene_reads_an_instrument_in_a_process_of_its_own(library, tmp_path):
-    """One hole, filled by the mean of its neighbours, weighted by 1/distance^2: 2 um along x, 1 um
-    along y. Bytes that are no instrument's file end in one message.
-    """
+    """One hole, filled by the mean of its neighbours, weights 1/distance^2: 2 um along x, 1 um along y."""
     scene = rough(tmp_path, "pin.sdf", sdf_in_words("BAD"), 'missing = "harmonic"\n')
     values = scene.surface.path.values
     known = ~np.isnan(values)

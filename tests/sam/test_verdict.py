@@ -38,7 +38,6 @@ AGAIN = (5e-3, 1e-3, 1e-3, 1e-3)
 
 
 def period(dp, strain, restarted=None):
-    """What a period added."""
     return Period(dp, norm_of(strain), strain, restarted)
 
 
@@ -60,7 +59,6 @@ def falling(turn):
 
 
 def together(*cells):
-    """Periods of several cells."""
     return [
         period(np.concatenate([one.accumulated for one in each]), np.hstack([one.strain for one in each]))
         for each in zip(*cells, strict=True)
@@ -72,7 +70,6 @@ def judging(worst=R, noise=NOISE):
 
 
 def class_of(found, total=1.0, **how):
-    """The class of the only cell."""
     return ORDER[classes(found, np.full(1, total), STRAIN, judging(**how))[0][0]]
 
 
