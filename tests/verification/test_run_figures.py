@@ -14,52 +14,36 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 import pytest
-from builders import running_in
+from builders import LINEAR, running_in, scene
 from matplotlib.collections import QuadMesh
 
-from sam.scene import Scene
 from verification.cost.contact import hertz_of
 from verification.figures.run import drawings_of, history
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
 
-BODY = {"young": 210e9, "poisson": 0.3}
-SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
-SPHERE = {"shape": "sphere", "radius": 105e-6}
+SOFT, PRESSED = {"plasticity": LINEAR}, {"force": 0.1, "steps": 2}
 WAVE = {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6}
 TRAVELLING = {"prescribed": "hertz", "p0": 2.5e9, "radius": 5e-6, "steps": 1}
 
 
-def with_body(body: dict, **sections) -> dict:
-    return {"body": body, "loading": {"force": 0.1, "steps": 2}, **sections}
-
-
+TRAVELLING |= {"path": {"start": (-3e-6, 0.0), "end": (4e-6, 3e-6), "steps": 2}}
+ELLIPSE = {"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 100e-6}
+WIDE, WIDER = {"cells": (32, 32), "extent": (16e-6, 16e-6)}, {"cells": (31, 31), "extent": (30e-6, 30e-6)}
 SCENES = {
-    "sphere": with_body(
-        SOFT, counterbody=SPHERE, loading={"force": 0.05, "steps": 1}, grid={"cells": (33, 33)}
-    ),
-    "ellipse": with_body(
-        BODY,
-        counterbody={"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 100e-6},
-        grid={"cells": (65, 65)},
-    ),
-    "cut off": with_body(
-        BODY, counterbody={"shape": "flat"}, surface=WAVE, grid={"cells": (32, 32), "extent": (16e-6, 16e-6)}
-    ),
-    "travelling": with_body(
-        SOFT,
-        loading=TRAVELLING | {"path": {"start": (-3e-6, 0.0), "end": (4e-6, 3e-6), "steps": 2}},
-        grid={"cells": (31, 31), "extent": (30e-6, 30e-6)},
-    ),
+    "sphere": scene(body=SOFT, loading={"force": 0.05, "steps": 1}, grid={"cells": (33, 33)}),
+    "ellipse": scene(counterbody=ELLIPSE, loading=PRESSED, grid={"cells": (65, 65)}),
+    "cut off": scene(counterbody={"shape": "flat"}, loading=PRESSED, surface=WAVE, grid=WIDE),
+    "travelling": scene(body=SOFT, loading=TRAVELLING, grid=WIDER),
+    "worn": running_in(),
 }
 
 
 @cache
 def run_of(name: str) -> Run:
     """A scene solved by SAM, read back from files that stay until the tests end."""
-    scene = running_in() if name == "worn" else Scene(**SCENES[name])
     folder = TemporaryDirectory()
-    write_run(models.solve(scene, models.SAM), scene, folder.name, {})
+    write_run(models.solve(SCENES[name], models.SAM), SCENES[name], folder.name, {})
     _FOLDERS.append(folder)
     return read_run(folder.name)
 
@@ -119,11 +103,8 @@ def test_the_history_distinguishes_loading_and_unloading_and_has_hertz():
     assert {line.get_linestyle() for line in history(once).figure.axes[0].lines[1:]} == {"None"}
 
 
-ALL = ["ellipse", "cut off", "travelling", "worn"]
-
-
 class TestPressure:
-    @pytest.mark.parametrize("name", ALL)
+    @pytest.mark.parametrize("name", ["ellipse", "cut off", "travelling", "worn"])
     def test_only_the_contact_is_coloured_and_its_largest_value_is_written(self, name):
         panel, run = panel_of(name, "pressure"), run_of(name)
         x, y, field = mesh_of(panel)
