@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from made_histories import CYCLES, FORCE, as_the_paper_says, history, result_of
 from made_results import Made, context, red as red_rows
-from made_studies import verdicts
+from made_studies import SCENES, verdicts
 
 from sam.scene import Status, load_scene
 from verification.cases.running_in import running_in, study
@@ -35,7 +35,6 @@ from verification.cases.running_in.study import (
 )
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
 
-SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 SMALL = reduced(SCENES[B], Effort(3, 2, 8))
 (CASE,) = running_in.CASES
 TEN = tuple(range(1, 11))

@@ -5,10 +5,10 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from made_studies import SCENES
 from scipy.integrate import solve_ivp
 
-from sam.scene import load_scene
-from verification.cases.running_in.study import BULK, HARDENING, NAMES, A, B, with_constant
+from verification.cases.running_in.study import BULK, DUCTILE, HARDENING, A, B, with_constant
 from verification.compare.running_in_measures import Limits
 from verification.reference.bonded_film import (
     Regime,
@@ -22,7 +22,6 @@ from verification.reference.bonded_film import (
 )
 
 FILM, BODY = (80e9, 0.3, 2e9 / 3), (210e9, 0.3)
-SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 
 
 def rate_integrated(p: float, mu: float) -> float:
@@ -87,7 +86,7 @@ class TestRegime:
             (BULK, 5.29, 3.80),
             (A, 5.27, 3.79),
             (B, 2.96, 2.13),
-            ("curve-b-ductile", 3.23, 2.32),
+            (DUCTILE, 3.23, 2.32),
             (HARDENING, 9.87, 7.10),
         ],
     )
