@@ -29,9 +29,6 @@ def test_the_frame_and_the_line_say_what_the_rows_say(counted):
     line = f"{len(used)} of {len(used)} agree, closest {closest} at {100 * used[closest]:.0f} % of its "
     line += "tolerance; "
     assert re.fullmatch(re.escape(line) + r"SAM [0-9.]+ s, FEM [0-9.]+ s", found.line)
-
-
-def test_every_row_that_fails_is_named(counted):
     found = judged({"p_max_Pa": "1e-9 %", "approach_m": 1e-11})
     assert {row.quantity for row in found.failed} == {"p_max_Pa", "approach_m"} and not found.passed
 
