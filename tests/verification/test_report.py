@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from builders import scene_text
 from fake_case import FakeCase, row
@@ -18,6 +19,7 @@ from verification.cases.case import Outcome, Plot, SmallTable
 from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
+from verification.runs import models
 from verification.runs.files import FolderError
 from verification.suite import verify
 
@@ -32,6 +34,14 @@ def sketch():
     figure = new_figure(1.0, 0.7, "none")
     figure.add_artist(Line2D([0.0, 1.0], [0.0, 1.0]))
     return Drawing(figure, {"x": [0.0, 1.0], "y": [0.0, 1.0]})
+
+
+def solved(context, gate) -> Outcome:
+    """What a case finds that solves COARSE: its largest pressure, 1 % off, and a figure."""
+    p = context.solve(models.SAM, COARSE, "sam").quantities["p_max_Pa"]
+    outcome = Outcome({gate: Measured(np.float64(p * 1.01), p)})
+    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
+    return outcome
 
 
 def good(context):

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from made_histories import as_the_paper_says, at_rest, result_of
-from made_results import Made, context, of_frame, red
+from made_results import Made, context, of_frame, of_plane, red
 from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics
 
 from fem_reference.spatial import WornCycle
@@ -452,9 +452,8 @@ def tables(cells: int, pressure: float = 1.0, strain: float = 1.0) -> dict:
     p, z = np.zeros((cells, cells)), np.linspace(0.1e-6, 3e-6, 24)
     for k, value in enumerate((4e9, 3e9, 2e9)):
         p[(3 + 7 * k) : (6 + 7 * k), cells // 2 - 1 : cells // 2 + 1] = value * (pressure if k == 1 else 1.0)
-    peeq = np.full((cells, 1), 0.01 * strain) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
-    (xx, yy), (px, pz) = np.meshgrid(x, x, indexing="ij"), np.meshgrid(x, z, indexing="ij")
+    xx, yy = np.meshgrid(x, x, indexing="ij")
     return {
         "surface": {"x_m": xx.ravel(), "y_m": yy.ravel(), "p_Pa": p.ravel(), "state": ["peak"] * xx.size},
-        "plane": {"x_m": px.ravel(), "z_m": pz.ravel(), "peeq": peeq.ravel(), "state": ["peak"] * px.size},
+        "plane": of_plane(x, z, "peeq", lambda _, z: 0.01 * strain * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))),
     }
