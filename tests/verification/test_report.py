@@ -8,8 +8,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from builders import scene_text
+from builders import parsed, scene_text
 from fake_case import FakeCase, row
+from made_results import context
 from matplotlib.lines import Line2D
 from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS
@@ -125,6 +126,24 @@ def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
     assert main(["verify", "good", "--out", str(tmp_path)]) == 2
     assert "holds files that are no verification report" in capsys.readouterr().err
     assert [path.name for path in tmp_path.rglob("*")] == ["holiday.png"]
+
+
+def test_a_case_of_the_suite_from_end_to_end(tmp_path, monkeypatch):
+    """The ellipse is the quickest; its report holds the page, the figures and the run."""
+    monkeypatch.undo()
+    assert run(tmp_path, "hertz-ellipse") == 0
+    assert (tmp_path / "elastic.html").stat().st_size > 0
+    assert (tmp_path / "runs/hertz-ellipse/sam/summary.json").stat().st_size > 0
+    for kind in ("png", "csv.gz"):
+        assert (tmp_path / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
+
+
+def test_a_solve_that_does_not_converge_breaks_its_case_off(tmp_path):
+    here = context("test", tmp_path)
+    small = parsed(add='[grid]\nextent = ["5 um", "5 um"]\n')  # than the contact
+    with pytest.raises(RuntimeError, match="grid-edge"):
+        here.solve(models.SAM, small, "sam")
+    assert here.runs == ["runs/test/sam"]
 
 
 def test_earlier_report_is_replaced(tmp_path):

@@ -8,10 +8,21 @@ import pytest
 from fake_case import row
 
 from sam.scene import SceneError
+from verification.cases import LEVELS, all_cases
 from verification.judging import Measured, Row, RowStatus, error_of, evaluate, judge
 from verification.rows import Take, load_rows, read_cases
+from verification.suite.forecast import costs_at
 
 GATES = load_rows()
+
+
+def test_gates_and_cases_belong_together():
+    cases = all_cases()
+    assert {gate.case for gate in GATES} == set(cases)
+    assert all(set(case.levels) <= set(LEVELS) for case in cases.values())
+    # those of no level need other programs
+    assert [name for name, case in cases.items() if not case.levels] == ["periodic-peers", "peers"]
+    assert set(costs_at("quick")) == {name for name, case in cases.items() if "quick" in case.levels}
 
 
 def synthetic(gate: Row, share: float) -> Measured:
