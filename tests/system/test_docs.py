@@ -37,7 +37,6 @@ PLACEHOLDER = "NAME"
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 PATH_OF_SOURCE = re.compile(r"(samfem|sam|fem_reference|verification|tests|docs|reports)/[\w./*-]+")
-every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 
 
 def prose(text: str) -> str:
@@ -117,7 +116,7 @@ def test_the_readme_is_short_and_its_example_is_that_of_the_command():
     assert len(planned) >= 4 and [line for line in planned if line not in shown] == []
 
 
-@every_page
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_commands_targets_modules_and_paths_are_right(page):
     text, makefile = PAGES[page], (ROOT / "Makefile").read_text(encoding="utf-8")
     assert wrong_commands(text) == []

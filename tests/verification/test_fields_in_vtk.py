@@ -74,14 +74,6 @@ def written(request, solved):
     return solved(request.param)
 
 
-def in_record(result, name: str, state: str) -> np.ndarray:
-    """The values of fields.vtu in the record, (n, 6), in the order of the file."""
-    if result.model == models.SAM:
-        values = result.grids[state]["plane"].point_data[name]
-        return values.reshape(*values.shape[:-3], -1).T
-    return result.bodies[state].cell_data[name]
-
-
 def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
     """Principal values, largest first, (3, n)."""
     tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -1)
@@ -92,7 +84,11 @@ def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
 @pytest.mark.parametrize("name", ["stress_Pa", "plastic_strain"])
 def test_components_have_the_names_order_and_turned_values_that_vtk_expects(written, name, state):
     grid = pyvista.read(written[1].folder / f"fields{STATES[state]}.vtu")
-    of_points, values = name in grid.point_data, in_record(written[0], name, state)
+    of_points, result = name in grid.point_data, written[0]
+    if of_points:
+        values = result.grids[state]["plane"].point_data[name].reshape(6, -1).T
+    else:
+        values = result.bodies[state].cell_data[name]
     array = (grid.GetPointData() if of_points else grid.GetCellData()).GetArray(name)
     names = tuple(array.GetComponentName(k) for k in range(array.GetNumberOfComponents()))
     assert names == TENSOR_NAMES == ("XX", "YY", "ZZ", "XY", "YZ", "XZ")

@@ -15,17 +15,6 @@ from verification.runs.study import read_study
 X = np.linspace(0.0, 10.0, 21)
 
 
-def two_lines(axis):
-    axis.plot(X, X, color=BLUE, label="one")
-    axis.plot(X, 2.0 * X, color=VERMILION, linestyle="--", label="two")
-    axis.set(xlabel="$x$ [µm]", ylabel="pressure [GPa]")
-
-
-def good(figure, axis):
-    two_lines(axis)
-    axis.legend()
-
-
 def named_beside(figure, axis):
     axis.get_legend().remove()
     axis.text(5.0, 4.0, "one", color=BLUE)
@@ -62,7 +51,10 @@ def beyond_the_sheet(figure, axis):
 )
 def test_a_broken_rule_is_found_and_a_good_figure_has_none(change, expected):
     with sheet(4.0, 3.0) as (figure, axis):
-        good(figure, axis)
+        axis.plot(X, X, color=BLUE, label="one")
+        axis.plot(X, 2.0 * X, color=VERMILION, linestyle="--", label="two")
+        axis.set(xlabel="$x$ [µm]", ylabel="pressure [GPa]")
+        axis.legend()
         change(figure, axis)
     found = findings(figure)
     assert (expected in " ".join(found)) if expected else found == []

@@ -39,16 +39,15 @@ class TestProblems:
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
 
 
-def timed(cells, seconds, label="", converged=True):
-    """A measurement of one round."""
-    job = Job(problems.HERTZ, cells, {"tolerance": 1e-5}, label)
-    return Measurement(job, [0.0], [seconds], record={"converged": converged, "peak_memory_bytes": 1e8})
-
-
 def rows(**found) -> pd.DataFrame:
     """Of programs whose error is 0.01/n^2: (seconds for n = 1, label) of each curve."""
+    record = {"converged": True, "peak_memory_bytes": 1e8}
     own = {
-        program: [timed(n, each * n, label) for each, label in curves for n in (10, 100)]
+        program: [
+            Measurement(Job(problems.HERTZ, n, {"tolerance": 1e-5}, label), [0.0], [each * n], record=record)
+            for each, label in curves
+            for n in (10, 100)
+        ]
         for program, curves in found.items()
     }
     return pd.DataFrame(running.rows_of("hertz", own, lambda m: 0.01 / m.job.cells**2))

@@ -25,11 +25,6 @@ ROWS = {row.name: row for row in all_rows("full")}
 EVERY = tuple(ROWS.values())
 
 
-def red_of(rows, found) -> set[str]:
-    frame = pd.DataFrame([*judged(rows, found), {"sweep": "Topics", "topics-missing": 0}])
-    return red("stability", of_frame("stability", frame), whole=True)
-
-
 def test_rows_are_complete():
     assert len(ROWS) == len(EVERY) and {row.topic for row in EVERY} == set(topics())
     assert all({SAM, FEM} <= set(row.expected) and row.what for row in EVERY)
@@ -86,7 +81,8 @@ def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, 
     cell = judge(row, model, Bench())
     assert cell.kind == WRONG and said in cell.text
     rest = {other: Cell(RIGHT) for other in row.expected}
-    assert "wrong" in red_of([row], {name: rest | {model: cell}})
+    rows = [*judged([row], {name: rest | {model: cell}}), {"sweep": "Topics", "topics-missing": 0}]
+    assert "wrong" in red("stability", of_frame("stability", pd.DataFrame(rows)), whole=True)
 
 
 # --- checks, of made results ---

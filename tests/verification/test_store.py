@@ -78,14 +78,10 @@ unwritten. Only a change of their own files, or of a default, may change one; of
 """
 
 
-def scene_of(name):
-    return load_scene(ROOT / "verification" / "scenes" / f"{name}.toml") if isinstance(name, str) else name
-
-
 @pytest.mark.parametrize("name", IDENTITIES)
 def test_a_key_at_its_default_changes_no_identity_and_no_byte(name):
     """Neither one that is new nor one that is written out, in the store, in checkpoints, in summary.json."""
-    scene = scene_of(name)
+    scene = load_scene(ROOT / f"verification/scenes/{name}.toml") if isinstance(name, str) else name
     assert store._key(identity(scene, models.SAM))[:12] == IDENTITIES[name]
     written = Scene(**_whole(scene))
     assert written == scene and written.model_fields_set == set(Scene.model_fields)
