@@ -65,11 +65,8 @@ def test_a_comparison_names_what_stops_every_model_at_once(scene_file, samfem):
     said = samfem("compare", scene_file(FLAT, ELASTIC_COUNTER, add=ROUGH + film), code=2).err
     _, axisymmetric, spatial = said.splitlines()
     assert axisymmetric.startswith("  fem-axisymmetric: ") and "remove [surface]" in axisymmetric
-    assert (
-        spatial.startswith("  fem-3d: ")
-        and "counterbody.young = " in spatial
-        and "remove young and poisson" in spatial
-    )
+    assert spatial.startswith("  fem-3d: ") and "remove young and poisson" in spatial
+    assert "counterbody.young = " in spatial
     assert 'friction.law = "chemical-film"' in spatial and not Path("scene-compare").exists()
     assert models.cheapest_reference(PATCH) == models.FEM_3D
     said = samfem("compare", scene_file(FLAT, add=ROUGH + FILM), code=2).err

@@ -41,9 +41,8 @@ def test_harmonics_equal_the_plane_wave_of_many_digits(young, nu, nu_body, kh):
     for s, film in ((0.5 * kh, True), (kh, True), (kh, False), (1.5 * kh, False)):
         zz, rz, rr, tt, _ = layers.profiles(k, layers.amplitudes(k), s / kh, film)[:, 0]
         expected = np.array(exact.state(s, 0, body=not film)[2:], dtype=float)
-        np.testing.assert_allclose(
-            [zz, rr, tt, rz], expected, rtol=0, atol=accuracy * np.max(np.abs(expected)) + 1e-15
-        )
+        off = np.abs([zz, rr, tt, rz] - expected).max()
+        assert off <= accuracy * np.max(np.abs(expected)) + 1e-15
 
 
 def test_waves_of_full_contact():
@@ -75,11 +74,8 @@ TABLE = {
 def test_coated_sphere_of_the_table(case):
     contact = film_contact(case[1], case[0])
     bare = contact.bare
-    found = (
-        contact.central_pressure / bare.peak_pressure,
-        contact.contact_radius / bare.contact_radius,
-        contact.approach / bare.approach,
-    )
+    ratios = contact.contact_radius / bare.contact_radius, contact.approach / bare.approach
+    found = contact.central_pressure / bare.peak_pressure, *ratios
     np.testing.assert_allclose(found, TABLE[case], atol=1.1e-5)
     assert contact.residual() < 1e-12
 

@@ -123,11 +123,8 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
     for name in listed:
         mesh = pyvista.read(run.folder / name)
         head = (run.folder / name).read_text(encoding="utf-8").splitlines()[1]
-        assert (
-            (head if name.endswith(".vtu") else mesh.field_data["axes"][0])
-            .lstrip("<!- ")
-            .startswith("z points up")
-        )
+        said = head if name.endswith(".vtu") else mesh.field_data["axes"][0]
+        assert said.lstrip("<!- ").startswith("z points up")
         assert mesh.n_cells > 0 and mesh.bounds[5] <= 0.0 and mesh.length > 0.0
         if name == {models.SAM: "body.vtr", models.FEM_3D: "fields.vtu"}.get(result.model):
             assert mesh.compute_cell_sizes()["Volume"].min() > 0.0  # of an element turned inside out: below

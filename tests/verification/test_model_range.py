@@ -164,9 +164,8 @@ def test_what_only_the_solution_shows_ends_in_a_status_or_goes_on_marked(folder,
     run = read_run(folder / "soft-sam")
     summary, drawn = run.summary, drawings_of(run)
     assert summary["status"] == status and summary["model_range"]["outside"] is True
-    assert summary["model_range"]["a_over_R"] == pytest.approx(
-        summary["quantities"]["contact_radius_m"] / RADIUS
-    )
+    radius = summary["quantities"]["contact_radius_m"]
+    assert summary["model_range"]["a_over_R"] == pytest.approx(radius / RADIUS)
     assert "outside of the model: a/R = 0.5" in said.err and ("beyond_model = true" in said.err) == bool(code)
     assert len(run.tables) >= 4 and all((table[OUTSIDE] > 0.5).all() for table in run.tables.values())
     meshes = [*(folder / "soft-sam").glob("*.vt[ru]")]

@@ -112,10 +112,8 @@ def test_values_that_do_not_fit_the_metric_fail(metric, measured):
 
 def test_l2_is_weighted():
     value, expected, weight = np.array([1.0, 3.0]), np.array([1.0, 2.0]), np.array([3.0, 1.0])
-    # by hand: sqrt(1 * 1^2 / (3 * 1^2 + 1 * 2^2)) = sqrt(1/7)
-    assert error_of("relative_l2", Measured(value, expected, weight)) == pytest.approx(
-        math.sqrt(1.0 / 7.0), rel=1e-15
-    )
+    found = error_of("relative_l2", Measured(value, expected, weight))
+    assert found == pytest.approx(math.sqrt(1.0 / 7.0), rel=1e-15)  # 1 * 1^2 / (3 * 1^2 + 1 * 2^2)
 
 
 FILE = """

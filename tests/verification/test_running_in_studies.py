@@ -184,9 +184,8 @@ class TestReadings:
         assert tables[0].rows[0][:4] == ("A roof that falls", "model", "10", "19")
         assert len(tables[0].rows) == len(words.CHANGES)
         assert "10 to 19 of 20 statements hold" in next(iter(self.CASE.notes(found)))
-        assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
-            words.SAID[0], {"values": (0.8,)}
-        )
+        near = [words.near(words.SAID[0], {"values": (value,)}) for value in (0.82, 0.8)]
+        assert near == [True, False]
 
     def test_wear_that_does_not_balance_and_a_loop_beyond_its_tolerance_turn_rows_red(self):
         name = words.named(words.PRINTED, "roof stays", "fills")
@@ -391,9 +390,8 @@ class TestFem:
         assert wrong(self.NAME, [{**row, "wears": 0.0} for row in rows]) == {"wears"}
         coarsest = fem.CELLS[0]
         worse = [{**row, "strain": row["strain"] * (10 if row["cells"] > coarsest else 1)} for row in rows]
-        assert wrong(self.NAME, worse) == {
-            f"{a}{b}-strain" for a in ("", "shrinks-") for b in ("own", "given")
-        }
+        rows = {f"{a}{b}-strain" for a in ("", "shrinks-") for b in ("own", "given")}
+        assert wrong(self.NAME, worse) == rows
 
     def test_models_are_compared_where_they_press_strain_and_wear(self, monkeypatch, tmp_path):
         """FEM presses twice as much on the middle spot, strains by a tenth more and wears a fifth less; it is
@@ -404,25 +402,22 @@ class TestFem:
         def solve(model, scene, label):
             cells = int(label.split("-")[1])
             states = [*(f"cycle-{k}" for k in range(1, fem.CYCLES)), "unloaded"]
-            return Made(
-                tables=tables(cells), grids={s: heights(cells, k) for k, s in enumerate(states, start=1)}
-            )
+            grids = {s: heights(cells, k) for k, s in enumerate(states, start=1)}
+            return Made(tables=tables(cells), grids=grids)
 
         def worn_cycles(scene, *ways):
             asked.extend(ways)
             cells = fem.CELLS[len(asked) // 2 - 1]
             worn = [heights(cells, k + 1)["surface"].cell_data["worn_m"][..., 0] for k in range(fem.CYCLES)]
-            return [
-                [WornCycle(tables(cells, 2.0, 1.1), 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]
-            ] * len(ways)
+            own = tables(cells, 2.0, 1.1)
+            return [[WornCycle(own, 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]] * len(ways)
 
         here = context(self.NAME, tmp_path)
         monkeypatch.setattr(here, "solve", solve)
         monkeypatch.setattr(fem, "worn_cycles", worn_cycles)
         rows = list(fem.compared(here))
-        assert asked[0] is None and np.sum(asked[1], axis=0).max() == pytest.approx(
-            fem.CYCLES * fem.THICK, rel=1e-12
-        )
+        assert asked[0] is None
+        assert np.sum(asked[1], axis=0).max() == pytest.approx(fem.CYCLES * fem.THICK, rel=1e-12)
         assert len(rows) == 8 and rows[-1]["wears"] == pytest.approx(fem.THICK)
         assert rows[-1]["pressure"] == pytest.approx(3.0 / np.sqrt(16 + 36 + 4))
         assert rows[-1]["residual"] < 1e-12

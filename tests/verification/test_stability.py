@@ -97,9 +97,8 @@ BY_APPROACH = scene(loading={"force": None, "approach": 1e-6})
 
 
 def cycles(*signs):
-    return {
-        "tables": {"cycles": {"cycle": [1, 2], "friction_coefficient": [0.3, 0.3], "friction_sign": signs}}
-    }
+    table = {"cycle": [1, 2], "friction_coefficient": [0.3, 0.3], "friction_sign": signs}
+    return {"tables": {"cycles": table}}
 
 
 def uncertain(**entries):
@@ -153,6 +152,5 @@ def worst(said, given, result, twin=None):
 
 @pytest.mark.parametrize(("said", "given", "right", "wrong"), MADE)
 def test_a_check_tells_right_from_wrong(said, given, right, wrong):
-    assert (
-        worst(said, given, {"quantities": {}} | right) <= 1 < worst(said, given, {"quantities": {}} | wrong)
-    )
+    of_right, of_wrong = (worst(said, given, {"quantities": {}} | result) for result in (right, wrong))
+    assert of_right <= 1 < of_wrong

@@ -95,9 +95,8 @@ class Small:
 @pytest.fixture
 def small(monkeypatch, counted):
     case = Small()
-    monkeypatch.setattr(
-        verify, "all_cases", lambda: {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
-    )
+    cases = {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
+    monkeypatch.setattr(verify, "all_cases", lambda: cases)
     monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
     return case
 
