@@ -157,9 +157,7 @@ def as_user(number: int, scratch: Path) -> list[str]:
 
 
 def of_kernel(name: str) -> Environment:
-    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called
-    Katmai), but those that are taken anyway, or that another of KERNELS asks for, are not its own.
-    """
+    """Kernels of OpenBLAS for a processor: by an older name too (Katmai), but not by that of another."""
 
     def holds(probe: dict, plain: dict) -> bool:
         taken = {*probe["numpy"], *probe["scipy"]}
@@ -240,9 +238,7 @@ def environments() -> dict[str, Environment]:
 
 
 def ended(words: Sequence[str], limit_s: float, **how) -> int | None:
-    """The exit code of a command, None after the limit. Its process group is ended whole when it
-    takes too long or this process is interrupted.
-    """
+    """The exit code of a command, None after the limit. Its process group ends with it in any case."""
     process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, **how)
     try:
         return process.wait(limit_s)

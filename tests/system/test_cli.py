@@ -140,9 +140,7 @@ def test_whatever_happens_there_is_a_message_and_no_traceback(
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it. Tests in a background
-    job would ignore it.
-    """
+    """A command that waits stands for one that runs; in a background job tests would ignore the signal."""
     code = "import sys, time; from samfem import cli, solving\n"
     code += "solving.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"
     code += "sys.exit(cli.main(['plan', 'sphere.toml']))"

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The documentation is right: its commands, scenes, file names and symbols are checked.
-
-`make docs` runs the stories of the guide, each in an empty folder, and checks all links.
-"""
+"""The documentation is right: commands, scenes, names. `make docs` runs the stories and checks links."""
 
 import re
 import shlex

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: the readers raise their own errors only; and every gate of the case turns red when
-something is wrong.
-"""
+"""Bad input: readers raise their own errors only; each gate of the case turns red on what is wrong."""
 
 import json
 import os
@@ -222,9 +220,7 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
-    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case
-    that breaks off.
-    """
+    """In the set-up, a table, a note, and the message of a case that breaks off."""
     text = " ".join(entry for entry in MARKUP if len(entry) < 100)
 
     def fill(context):

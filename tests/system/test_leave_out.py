@@ -194,9 +194,7 @@ def test_every_need_is_used_and_every_stage_that_runs_is_known():
 
 
 def test_every_probe_names_something_and_every_influence_coefficient_has_a_probe():
-    """A function that is renamed or moved must not go unseen; coefficients are functions that are named so,
-    and methods of a coated body.
-    """
+    """A function that is renamed or moved must not go unseen. Coefficients are functions named so."""
     wrapped = {end for ran in climbed().values() for end in ran["wrapped"]}
     assert wrapped == {end for probes in ladder.PROBES.values() for end in probes}
     names = re.findall(r"(?m)^def ([a-z]\w*_coefficients)\(", "".join(map(Path.read_text, KERNELS)))

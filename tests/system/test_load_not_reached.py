@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A solve that ends before its peak load: no quantity of that load, no state called peak, and the
-last load that fitted.
-"""
+"""A solve that ends before its peak load has no quantity of it, and says the last load that fitted."""
 
 import io
 from contextlib import redirect_stderr, redirect_stdout
@@ -46,9 +44,7 @@ def says_what_was_reached(result, force: float) -> None:
 
 
 def limited(monkeypatch, model: type, fails) -> None:
-    """Let Newton's method of a model end unconverged where `fails` says so of the force, in units
-    of the peak's.
-    """
+    """Let Newton's method end unconverged where `fails` says so of the force over that of the peak."""
     solved = model.load
 
     def load(self, target, *arguments, **keys):

@@ -64,9 +64,7 @@ def test_every_number_of_a_load_step_is_that_of_one_thread(pairs, k):
 
 @two_cores
 def test_the_same_cells_are_worn_and_lose_their_film(pairs):
-    """Where iteration counts differ a load step differs by its tolerance: cycles at random add up
-    to five times that.
-    """
+    """Load steps may differ by the tolerance: cycles at random add up to five times that."""
     one, two, _ = pairs[-1]
     first, second = (
         {name: np.asarray(each.tables["surface"][name], dtype=float) for name in ("worn_m", "friction")}

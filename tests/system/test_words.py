@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the commands say: reasons that name the key to change, suggestions, advice first, sizes that
-a person can read.
-"""
+"""What commands say: the key to change, suggestions, advice first, sizes that a person can read."""
 
 import json
 import re
@@ -76,9 +74,7 @@ def test_a_comparison_names_what_stops_every_model_at_once(scene_file, samfem):
 
 
 class TestClaim:
-    """A film of 0.08 contact radii and a third of the stiffness changes pressure and stress by 6
-    and 7 %: not negligible.
-    """
+    """A film of 0.08 contact radii, a third as stiff, changes pressure and stress by 6 and 7 %."""
 
     film = FILM.replace("100 nm", "500 nm")
     asked = '[compare]\nclaim = "negligible-film"\n'
@@ -209,9 +205,7 @@ AT_LIMIT = [
 
 
 class TestAdviceOfWhatCanBeChanged:
-    """Every status of every model: no key at its limit, none that the scene has not, none that is
-    set already.
-    """
+    """No key at its limit, none that the scene has not, none that is set already."""
 
     @pytest.mark.parametrize("advise", [advice, message_of])
     def test_every_status_says_what_to_change(self, advise):

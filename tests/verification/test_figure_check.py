@@ -1,6 +1,4 @@
-"""What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one; and
-the figure of a sweep has each value at its point.
-"""
+"""Each rule of a figure finds what breaks it, and a sweep is drawn with each value at its point."""
 
 import numpy as np
 import pytest

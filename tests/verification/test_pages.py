@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pages, README and the guide can be read, and their numbers are those of the results;
-nothing that is published names the machine that wrote it.
-"""
+"""The pages, README and the guide can be read, have the numbers of the results, and name no machine."""
 
 import copy
 import json

@@ -394,9 +394,7 @@ class TestFem:
         assert wrong(self.NAME, worse) == rows
 
     def test_models_are_compared_where_they_press_strain_and_wear(self, monkeypatch, tmp_path):
-        """FEM presses twice as much on the middle spot, strains by a tenth more and wears a fifth less; it is
-        given what SAM removes in each cycle.
-        """
+        """FEM presses twice on the middle spot, strains a tenth more and wears a fifth less than SAM."""
         asked = []
 
         def solve(model, scene, label):

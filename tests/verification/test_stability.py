@@ -73,9 +73,7 @@ def overflow(result):
     ],
 )
 def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, name, model, change, said):
-    """A wrong answer, an answer in place of an error, an error without advice or of another kind, an error in
-    place of an answer, another exception, a warning.
-    """
+    """Wrong answers and errors, either in place of the other, other exceptions, a warning."""
     solve, row = models.solve, ROWS[name]
     monkeypatch.setattr(models, "solve", lambda scene, model: change(solve(scene, model)))
     cell = judge(row, model, Bench())
