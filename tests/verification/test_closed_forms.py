@@ -196,9 +196,8 @@ def test_axis_stress_is_the_textbook_form():
     np.testing.assert_allclose(stress[:, 0], 5 * lateral, rtol=0, atol=5e-15 * 5)
     np.testing.assert_array_equal(stress[:, 0], stress[:, 1])
     tangential = hamilton.tangential_stress(0.0, 0.0, z, 1.0, contact_radius=1.0, nu=nu)[:, 4]
-    np.testing.assert_allclose(
-        tangential, -1 + 1.5 * z * np.arctan(1 / z) - z**2 / (2 * (1 + z**2)), rtol=0, atol=5e-15
-    )  # Hamilton
+    exact = -1 + 1.5 * z * np.arctan(1 / z) - z**2 / (2 * (1 + z**2))  # Hamilton
+    np.testing.assert_allclose(tangential, exact, rtol=0, atol=5e-15)
 
 
 @pytest.mark.parametrize("nu", RATIOS)
@@ -363,9 +362,8 @@ def cosine_wave(n):
 
 def test_double_wave_keeps_its_limits():
     """Without intensity at its edge what opens a round crack has no moment over sqrt(b^2 - r^2)."""
-    contact = westergaard.DoublyWavyContact(
-        1e-3, 2.0, 5.0, 0.9999 * math.sqrt(2) * math.pi * 5.0 * 1e-3 / 2.0
-    )
+    complete = math.sqrt(2) * math.pi * 5.0 * 1e-3 / 2.0
+    contact = westergaard.DoublyWavyContact(1e-3, 2.0, 5.0, 0.9999 * complete)
     b = math.sqrt((1 - contact.heavy_share) * contact.wavelength**2 / (2 * math.pi))  # two in a wave
     t, w = gauss(40)
     r = b * np.sin(0.5 * np.pi * t)  # moment of the mean over a circle about the hollow at (lambda/2, 0)

@@ -41,9 +41,8 @@ FROM_SCENE = [0, 2, 1, 4, 5, 3]
 def abaqus_mesh(fem) -> pyvista.UnstructuredGrid:
     """The axisymmetric result in mm and MPa, y upwards."""
     points, quads = np.asarray(fem.fields.points), np.asarray(fem.fields.cells["quad"])
-    mesh = pyvista.UnstructuredGrid(
-        {pyvista.CellType.QUAD: quads}, 1e3 * points[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
-    )
+    places = 1e3 * points[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    mesh = pyvista.UnstructuredGrid({pyvista.CellType.QUAD: quads}, places)
     mesh.point_data["CPRESS"] = np.asarray(fem.fields.point_data["p_Pa"]) * 1e-6
     uz = np.asarray(fem.fields.point_data["uz_m"])
     mesh.point_data["U"] = np.stack([0 * uz, -1e3 * uz, 0 * uz], axis=1)

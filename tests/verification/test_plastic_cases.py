@@ -41,9 +41,8 @@ def test_what_refinement_allows(name):
     scene = SimpleNamespace(body=SimpleNamespace(plasticity=True))
     sam, fem = cone(33, 1.02), line(1.0)
     coarser = (cone(17, 1.02 - 0.007), 8 / 7), (line(0.995), 2.0)
-    of_sam, of_fem, apart, allowed = refinement(
-        Solved(scene, None, {"sam": sam, "fem": fem}, coarser=coarser), QUANTITIES[name]
-    )
+    found = Solved(scene, None, {"sam": sam, "fem": fem}, coarser=coarser)
+    of_sam, of_fem, apart, allowed = refinement(found, QUANTITIES[name])
     if name == "peeq-max":
         expected = 7 * 0.007 / 1.013, 0.005 / 0.995, 0.02
     else:
@@ -83,9 +82,8 @@ class TestSampling:
     def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
         r, z = np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)
         plane = of_plane(r, z, "mises_Pa", lambda _, z: 2.0 + 5.0 * z)
-        field = plane_field_on(
-            np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0]), {"plane": plane}, "mises_Pa"
-        )
+        x, depths = np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0])
+        field = plane_field_on(x, depths, {"plane": plane}, "mises_Pa")
         assert np.isnan(field[:, 0]).all() and np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)
         whole = of_plane(2.0 * (r - 1.5), z, "mises_Pa", lambda x, _: 3.5 + x / 2.0)  # not symmetric
         field = plane_field_on(np.array([-1.0, 0.7]), np.array([0.5]), {"plane": whole}, "mises_Pa")

@@ -80,10 +80,8 @@ def run(base, out="out", store="store", code=0) -> dict[str, bytes]:
     """The figures and the table of gates."""
     where = {"out": base / out, "store": base / store}
     assert publishing.publish([], level="full", workers=2, **where) == code
-    return {
-        path.name: path.read_bytes()
-        for path in (*(base / out / "figures").iterdir(), base / out / "gates.csv")
-    }
+    paths = *(base / out / "figures").iterdir(), base / out / "gates.csv"
+    return {path.name: path.read_bytes() for path in paths}
 
 
 def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tmp_path, published, counted):

@@ -222,9 +222,8 @@ def test_junit_has_one_testcase_a_gate(tmp_path):
     run(tmp_path / "out")
     suites = list(ElementTree.parse(tmp_path / "out" / "junit.xml").getroot())
     kinds = "failure", "error", "skipped"
-    said = {
-        s.get("name"): [int(s.get(key)) for key in ("tests", "failures", "errors", "skipped")] for s in suites
-    }
+    keys = "tests", "failures", "errors", "skipped"
+    said = {s.get("name"): [int(s.get(key)) for key in keys] for s in suites}
     held = {s.get("name"): [len(s), *(len(s.findall(f"testcase/{kind}")) for kind in kinds)] for s in suites}
     assert held == said
     assert said == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}
