@@ -41,6 +41,12 @@ def square_mesh(x: np.ndarray, p: np.ndarray, y: np.ndarray | None = None) -> Fi
     return FieldMesh(points, {"quad": quads}, cell_data={"p_Pa": p.ravel()})
 
 
+def of_plane(x: np.ndarray, z: np.ndarray, name: str, field) -> dict:
+    """The table of a field at peak in y = 0: name -> field(x, z) at the points of a grid."""
+    at = [each.ravel() for each in np.meshgrid(x, z, indexing="ij")]
+    return {"state": ["peak"] * at[0].size, "x_m": at[0], "z_m": at[1], name: field(*at)}
+
+
 def column(result, table: str, name: str, state: str = "peak") -> np.ndarray:
     """A column of a table of a result in the rows of one state."""
     return np.asarray(result.tables[table][name])[np.array(result.tables[table]["state"]) == state]

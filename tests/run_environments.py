@@ -115,11 +115,11 @@ def on_one_core(checkout: Path, scratch: Path) -> list[str]:
 
 def on_a_terminal(checkout: Path, scratch: Path) -> list[str]:
     """A terminal of its own."""
-    ended = "os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:]))"
+    ended = "code = os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:]))"
     return [
         sys.executable,
         "-c",
-        f"import os, pty, sys; code = {ended}; sys.exit(code if code >= 0 else 128 - code)",
+        f"import os, pty, sys; {ended}; sys.exit(code if code >= 0 else 128 - code)",
     ]
 
 
@@ -157,9 +157,7 @@ def as_user(number: int, scratch: Path) -> list[str]:
 
 
 def of_kernel(name: str) -> Environment:
-    """Kernels of OpenBLAS for a processor. They may go by an older name (Prescott's are called
-    Katmai), but those that are taken anyway, or that another of KERNELS asks for, are not its own.
-    """
+    """Kernels of OpenBLAS for a processor: by an older name too (Katmai), but not by that of another."""
 
     def holds(probe: dict, plain: dict) -> bool:
         taken = {*probe["numpy"], *probe["scipy"]}
@@ -173,7 +171,6 @@ def environments() -> dict[str, Environment]:
     features = numpy.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", [])
     plain_c, nobody = {**dict.fromkeys(LANGUAGE), "LC_ALL": "C"}, dict.fromkeys(HOMES)
     screen = dict.fromkeys(SCREEN)
-    colours = {**screen, "TERM": "xterm-256color", "COLUMNS": "60", "FORCE_COLOR": "1"}
     found = {"plain": Environment("nothing changed; no terminal")}
     found |= {f"openblas-{name.lower()}": of_kernel(name) for name in KERNELS}
     found["numpy-baseline"] = Environment(
@@ -181,13 +178,12 @@ def environments() -> dict[str, Environment]:
         {"NPY_DISABLE_CPU_FEATURES": " ".join(features)},
         holds=lambda probe, plain: bool(plain["features"]) and not probe["features"],
     )
-    for count in (1, 2):
-        found[f"threads-{count}"] = Environment(
-            f"OPENBLAS_NUM_THREADS={count}, and those of other libraries",
-            dict.fromkeys(THREADS, str(count)),
-            holds=lambda probe, plain, count=count: probe["threads"] == [count],
-        )
     found |= {
+        "threads-2": Environment(
+            "OPENBLAS_NUM_THREADS=2, and those of other libraries",
+            dict.fromkeys(THREADS, "2"),
+            holds=lambda probe, plain: probe["threads"] == [2],
+        ),
         "one-core": Environment(
             "one core", around=on_one_core, holds=lambda probe, plain: probe["cores"] == 1 < plain["cores"]
         ),
@@ -227,7 +223,7 @@ def environments() -> dict[str, Environment]:
         ),
         "terminal": Environment(
             "a terminal, 60 columns wide, in colour",
-            colours,
+            screen | {"TERM": "xterm-256color", "COLUMNS": "60", "FORCE_COLOR": "1"},
             around=on_a_terminal,
             holds=lambda probe, plain: probe["terminal"],
         ),
@@ -242,9 +238,7 @@ def environments() -> dict[str, Environment]:
 
 
 def ended(words: Sequence[str], limit_s: float, **how) -> int | None:
-    """The exit code of a command, None after the limit. Its process group is ended whole when it
-    takes too long or this process is interrupted.
-    """
+    """The exit code of a command, None after the limit. Its process group ends with it in any case."""
     process = subprocess.Popen(words, stdin=subprocess.DEVNULL, start_new_session=True, **how)
     try:
         return process.wait(limit_s)
@@ -283,20 +277,15 @@ def run(
     checkout, scratch = ROOT, base / "scratch"
     scratch.mkdir()
     try:
-        if environment.owner is not None:  # a copy that belongs to that user
-            if os.geteuid() != 0:
-                raise NotHereError("only root can become another user")
-            checkout = base / "checkout"
+        if environment.owner is None:
+            before = environment.around(checkout, scratch)
+        else:  # a copy that belongs to that user
+            before, checkout = as_user(environment.owner, scratch), base / "checkout"
             shutil.copytree(ROOT, checkout, ignore=shutil.ignore_patterns(*LATEST))
             environment.variables_in(scratch)
             base.chmod(0o755)
             for path in (checkout, *checkout.rglob("*"), scratch, *scratch.rglob("*")):
                 os.chown(path, environment.owner, environment.owner, follow_symlinks=False)
-        before = (
-            environment.around(checkout, scratch)
-            if environment.owner is None
-            else as_user(environment.owner, scratch)
-        )
         found = probe(environment, checkout, scratch, before)
     except NotHereError as reason:
         return [name, environment.says, "", f"not run: {reason}"], False

@@ -22,6 +22,7 @@ from sam.half_space import circular_contact_radius
 from sam.planner import bodies, make
 from sam.scene import LeftOut
 from samfem.cli import main
+from verification.reference.hertz import CircularContact
 from verification.runs import models
 from verification.runs.files import read_run
 from verification.text.console import Progress, digits, print_anything, print_table
@@ -32,18 +33,16 @@ def folder(sphere_folder) -> Path:
     return sphere_folder
 
 
-A = (3 * 0.65 * RADIUS / (4 * MODULUS)) ** (1 / 3)
-HERTZ = {"contact_radius_m": A, "p_max_Pa": 3 * 0.65 / (2 * math.pi * A**2), "approach_m": A**2 / RADIUS}
-"""Hertz 1882 for the scene (Johnson 1985, Eq. 4.22-4.24)."""
-
-
 @pytest.mark.parametrize("model", ["sam", "fem-axisymmetric"])
 def test_solve_writes_a_result_that_agrees_with_hertz(folder, samfem, monkeypatch, model):
     monkeypatch.setattr("verification.text.console.QUIET_S", math.inf)  # however slow the machine is
     shown = samfem("solve", "sphere.toml", "--model", model)
     run = read_run(folder / f"sphere-{model}")
     # default meshes: 1e-3 measured for p_max of FEM
-    assert {name: run.quantities[name] for name in HERTZ} == pytest.approx(HERTZ, rel=2e-3)
+    exact = CircularContact(0.65, RADIUS, MODULUS)
+    hertz = {"contact_radius_m": exact.contact_radius, "p_max_Pa": exact.peak_pressure}
+    hertz["approach_m"] = exact.approach
+    assert {name: run.quantities[name] for name in hertz} == pytest.approx(hertz, rel=2e-3)
     assert "approach_m" in shown.out and f"sphere-{model}/summary.json" in shown.out
     assert shown.err.count("\n") == 1 and "half-space): mean pressure 1.7 % too low" in shown.err
     summary = run.summary
@@ -134,19 +133,14 @@ def test_whatever_happens_there_is_a_message_and_no_traceback(
     message = samfem("solve", "sphere.toml", code=code).err
     assert fragment in message and message.count("\n") == 1
     assert not (folder / "sphere-sam").exists()
-
-
-def test_a_defect_shows_where_when_asked(folder, monkeypatch):
-    monkeypatch.setattr(models, "solve", lambda *_, **__: 1 / 0)
-    monkeypatch.setenv("SAMFEM_DEBUG", "1")
-    with pytest.raises(ZeroDivisionError):
-        main(["solve", "sphere.toml"])
+    monkeypatch.setenv("SAMFEM_DEBUG", "1")  # a defect shows where
+    if "internal" in fragment:
+        with pytest.raises(ZeroDivisionError):
+            main(["solve", "sphere.toml"])
 
 
 def test_an_interrupt_in_a_process_of_its_own(folder):
-    """The signal arrives while a command runs; one that waits stands for it. Tests in a background
-    job would ignore it.
-    """
+    """A command that waits stands for one that runs; in a background job tests would ignore the signal."""
     code = "import sys, time; from samfem import cli, solving\n"
     code += "solving.plan = lambda **_: (print('runs', flush=True), time.sleep(60))\n"
     code += "sys.exit(cli.main(['plan', 'sphere.toml']))"
@@ -187,18 +181,13 @@ def test_escapes_in_names_do_not_reach_the_terminal(folder, samfem):
 # plan
 
 
-def test_plan_solves_nothing_and_creates_nothing(folder, samfem, monkeypatch):
+def test_plan_solves_and_creates_nothing_and_has_what_the_solvers_then_do(folder, samfem, monkeypatch):
+    solved = [models.solve(parsed(), model) for model in (models.SAM, models.FEM)]
     monkeypatch.setattr(models, "solve", lambda *_: pytest.fail("solved"))
     before = sorted(folder.iterdir())
     text = samfem("plan", "coarse.toml", "--verbose").out
-    assert "Sphere" in text and "sam: about" in text and "fem-axisymmetric: about" in text
     assert "cells from [grid], extent chosen from the Hertz radius (cells 33 x 33" in text
-    assert "left out  tangential kernels" in text and "estimates" in text
-    assert sorted(folder.iterdir()) == before
-
-
-def test_plan_as_json_has_what_the_solvers_then_do(folder, samfem):
-    solved = [models.solve(parsed(), model) for model in (models.SAM, models.FEM)]
+    assert "left out  tangential kernels" in text and sorted(folder.iterdir()) == before
     entries = json.loads(samfem("plan", "sphere.toml", "--json").out)["models"]
     for entry, result in zip(entries[:2], solved, strict=True):
         assert entry["model"] == result.model and entry["available"]
@@ -243,22 +232,6 @@ def test_a_scene_is_checked_planned_and_estimated_once(folder, add):
     assert set(calls_of(ONCE[:4], lambda: main(["solve", "small.toml"])).values()) == {1}
     planners, words = (fem_reference.axisymmetric.planner.plan,), ["--model", "fem-axisymmetric"]
     assert set(calls_of(planners, lambda: main(["solve", "small.toml", *words])).values()) == {1}
-
-
-PLASTIC = '[body.plasticity]\nlaw = "table"\nfile = "curve.csv"\n'
-
-
-def test_a_file_that_the_scene_names_is_hashed_with_it(folder, samfem):
-    """A yield stress out of reach: the answer is Hertz's."""
-    curve = "peeq,yield_stress_Pa\n0,1e12\n"
-    (folder / "curve.csv").write_text(curve)
-    (folder / "scene.toml").write_text(scene_text(add=PLASTIC))
-    samfem("solve", "scene.toml", "--model", "fem-axisymmetric")
-    run = read_run(folder / "scene-fem-axisymmetric")
-    digest = hashlib.sha256(curve.encode()).hexdigest()
-    assert run.summary["provenance"]["input_sha256"]["curve.csv"] == digest
-    assert run.quantities["peeq_max"] == 0.0 and run.scene.body.plasticity.file == ((0.0, 1e12),)
-    assert run.quantities["p_max_Pa"] == pytest.approx(HERTZ["p_max_Pa"], rel=2e-3)
 
 
 # console

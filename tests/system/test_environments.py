@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command that runs the suite in other environments: what it calls failed or not run, and that it
-goes on.
-"""
+"""The command that runs the suite in other environments: what it calls failed or not run; it goes on."""
 
 import pytest
 from run_environments import environments, main

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every hardening law and shape is known wherever one of each is asked for: what is forgotten of a new one is
-named here.
-"""
+"""Each hardening law and shape is known everywhere: what is forgotten of a new one is named here."""
 
 import math
 from pathlib import Path

@@ -18,13 +18,7 @@ from samfem import cli
 from verification.cases.robustness import faults as case
 from verification.cases.sweep import tables_of
 from verification.robustness import kills
-from verification.robustness.kills import (
-    differences,
-    fault_of,
-    inspect,
-    killed_solve,
-    killed_sweep,
-)
+from verification.robustness.kills import differences, fault_of, inspect, killed_solve, killed_sweep
 from verification.rows import case_files
 from verification.runs import files, lock
 from verification.runs.files import FolderError, write_atomically

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Bad input: the readers raise their own errors only; and every gate of the case turns red when
-something is wrong.
-"""
+"""Bad input: readers raise their own errors only; each gate of the case turns red on what is wrong."""
 
 import json
 import os
@@ -15,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pandas as pd
 import pytest
-from fake_case import FakeCase
+from fake_case import FakeCase, row
 from hypothesis import HealthCheck, example, given, settings, strategies as st
 from made_results import of_frame
 
@@ -25,7 +23,7 @@ from sam.scene.schema import parse_toml, scene_of
 from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan
-from verification.judging import Measured, Row
+from verification.judging import Measured
 from verification.robustness.fuzz import (
     KINDS,
     MAPPINGS,
@@ -222,9 +220,7 @@ def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, cod
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
-    """As a title of a scene would arrive: in the set-up, a table, a note, and the message of a case
-    that breaks off.
-    """
+    """In the set-up, a table, a note, and the message of a case that breaks off."""
     text = " ".join(entry for entry in MARKUP if len(entry) < 100)
 
     def fill(context):
@@ -234,14 +230,9 @@ def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypa
     def fail(context):
         raise RuntimeError(text)
 
-    said = {"quantity": "q", "metric": "relative", "tolerance": 0.1, "reason": "r", "kind": "exact"}
-    gates = tuple(Row(id=f"{case}.one", case=case, **said) for case in ("good", "bad"))
-    cases = {
-        "good": FakeCase("good", text, text, does=fill),
-        "bad": FakeCase("bad", "Bad", "Why?", does=fail),
-    }
-    monkeypatch.setattr(verify, "all_cases", lambda: cases)
-    monkeypatch.setattr(verify, "load_rows", lambda: gates)
+    cases = FakeCase("good", text, text, does=fill), FakeCase("bad", "Bad", "Why?", does=fail)
+    monkeypatch.setattr(verify, "all_cases", lambda: {case.name: case for case in cases})
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("good.one"), row("bad.one")])
     assert verify.main([], "quick", tmp_path / "out") == 1
     page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
     assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page

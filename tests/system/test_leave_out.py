@@ -147,11 +147,6 @@ def running(model: str, rung: str) -> frozenset[str]:
     return frozenset(said)
 
 
-def at_work(model: str, rung: str) -> frozenset[str]:
-    """What the plan runs, but what the solve itself found that it may leave out."""
-    return running(model, rung) - {stage for stage, _ in ran_in(model, rung)["left_out"]}
-
-
 def known(model: str) -> set[str]:
     """The stages of which something is needed, or which the result tells of."""
     named = {name.removeprefix("not ") for key in NEEDS[model] for name in key.split(", ")}
@@ -174,16 +169,16 @@ def surprises(model: str, runs: frozenset[str], ran: dict) -> list[str]:
     astray = [kind for kind in sorted(ran["transforms"]) if model != SAM or not kind.startswith(TRANSFORMING)]
     out += [f"not needed: a transform of {kind or 'no work'}" for kind in astray]
     later = [note for cycle, note in zip(ran["cycles"], ran["notes"], strict=True) if cycle > 1]
-    told = {
-        "unloading": "unloaded" in ran["states"],
-        "cycles after the first": any("equal to cycle 1" not in note for note in later),
-    }
+    told = {"unloading": "unloaded" in ran["states"]}
+    told["cycles after the first"] = any("equal to cycle 1" not in note for note in later)
     return out + [f"not as planned: {stage}" for stage, found in told.items() if found != (stage in runs)]
 
 
 @every_rung
 def test_what_the_plan_needs_runs_and_nothing_else(model, rung):
-    assert surprises(model, at_work(model, rung), ran_in(model, rung)) == []
+    """But what the solve itself found that it may leave out."""
+    ran = ran_in(model, rung)
+    assert surprises(model, running(model, rung) - {stage for stage, _ in ran["left_out"]}, ran) == []
 
 
 def test_every_need_is_used_and_every_stage_that_runs_is_known():
@@ -194,9 +189,7 @@ def test_every_need_is_used_and_every_stage_that_runs_is_known():
 
 
 def test_every_probe_names_something_and_every_influence_coefficient_has_a_probe():
-    """A function that is renamed or moved must not go unseen; coefficients are functions that are named so,
-    and methods of a coated body.
-    """
+    """A function that is renamed or moved must not go unseen. Coefficients are functions named so."""
     wrapped = {end for ran in climbed().values() for end in ran["wrapped"]}
     assert wrapped == {end for probes in ladder.PROBES.values() for end in probes}
     names = re.findall(r"(?m)^def ([a-z]\w*_coefficients)\(", "".join(map(Path.read_text, KERNELS)))
@@ -259,9 +252,8 @@ def test_the_plan_the_printed_plan_and_the_result_say_what_is_left_out(model, ru
     assert all(stage.reason for stage in stages)
     unsized = {"tangential traction", "eigenstrain kernels"}  # of the latter `samfem plan` predicts the size
     assert all(stage.size for stage in stages if stage.runs and stage.stage not in unsized)
-    entry = next(
-        each for each in printed_plan(ladder.scene(rung)).content["models"] if each["model"] == model
-    )
+    shown = printed_plan(ladder.scene(rung)).content["models"]
+    (entry,) = (each for each in shown if each["model"] == model)
     assert entry["available"], entry["reason"]
     printed = {(stage["stage"], stage["reason"], stage["runs"]) for stage in entry["stages"]}
     assert printed == {(stage.stage, stage.reason, stage.runs) for stage in stages}

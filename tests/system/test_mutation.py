@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The mutation check: what it finds, that it is changed where it is used, what is lost, and that
-its gates turn red.
-"""
+"""The mutation check: what it finds and where it changes it, what is lost, and its gates turn red."""
 
 import sys
 from functools import _lru_cache_wrapper

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A solve that was stopped and continued gives the same bytes; a checkpoint of anything else is
-refused by name.
-"""
+"""A solve that was stopped and continued gives the same bytes; another checkpoint is refused by name."""
 
 import json
 from itertools import pairwise

@@ -84,9 +84,7 @@ def test_interrupt_then_resume_again_and_again(solve, interrupt, model):
 
 
 def test_interrupt_after_the_last_step_then_resume(solve, interrupt, monkeypatch):
-    """Between the last step and the files of the result nothing is left to be solved; the latest
-    checkpoint is written also if the interval has not passed.
-    """
+    """Nothing is left to be solved; the latest checkpoint is written before its interval has passed."""
     monkeypatch.setenv(checkpoints.INTERVAL, "1e6")
     assert "continues after the last step" in interrupt(5)[0]
     assert "continued after the last of 5 steps" in solve("--resume").err
@@ -191,9 +189,7 @@ def test_resume_of_a_finished_folder_solves_nothing_and_keeps_its_exit_code(fold
 
 
 def test_an_older_result_stays_until_a_newer_solve_is_finished(solve, interrupt):
-    """Interrupted while it solves the scene of a finished folder again: the result is there, and
-    --resume finishes.
-    """
+    """Interrupted while it solves the scene of a finished folder again."""
     solve()
     summary = SUMMARY.read_bytes()
     interrupt(2)

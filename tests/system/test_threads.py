@@ -64,16 +64,12 @@ def test_every_number_of_a_load_step_is_that_of_one_thread(pairs, k):
 
 @two_cores
 def test_the_same_cells_are_worn_and_lose_their_film(pairs):
-    """Where iteration counts differ a load step differs by its tolerance: cycles at random add up
-    to five times that.
-    """
+    """Load steps may differ by the tolerance: cycles at random add up to five times that."""
     one, two, _ = pairs[-1]
-    first, second = (
-        {name: np.asarray(each.tables["surface"][name], dtype=float) for name in ("worn_m", "friction")}
-        for each in (one, two)
+    (worn, other), (mu, other_mu) = (
+        [np.asarray(each.tables["surface"][name], dtype=float) for each in (one, two)]
+        for name in ("worn_m", "friction")
     )
-    assert np.array_equal(first["worn_m"] > 0.0, second["worn_m"] > 0.0) and first["worn_m"].max() > 0.0
-    assert np.array_equal(np.isnan(first["friction"]), np.isnan(second["friction"]))
-    assert np.array_equal(first["friction"] > 0.25, second["friction"] > 0.25)
-    worn = first["worn_m"]
-    np.testing.assert_allclose(second["worn_m"], worn, rtol=0.0, atol=5e-4 * worn.max())
+    assert np.array_equal(worn > 0.0, other > 0.0) and worn.max() > 0.0
+    assert np.array_equal(np.isnan(mu), np.isnan(other_mu)) and np.array_equal(mu > 0.25, other_mu > 0.25)
+    np.testing.assert_allclose(other, worn, rtol=0.0, atol=5e-4 * worn.max())

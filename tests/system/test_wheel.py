@@ -10,6 +10,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from builders import scene_text
 from fake_case import FakeCase
 from setuptools import find_namespace_packages
 
@@ -20,16 +21,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 OWN = ("samfem", "sam", "fem_reference", "verification")
 LEFT_OUT = "verification/robustness/mutants/"
-SPHERE = """
-[body]
-young = "210 GPa"
-poisson = 0.3
-[counterbody]
-shape = "sphere"
-radius = "0.1 mm"
-[loading]
-force = "0.1 N"
-"""
 STUDY = """
 scene = "s.toml"
 [vary]
@@ -81,7 +72,7 @@ def test_without_its_extras_samfem_solves_and_the_rest_says_what_to_install(tmp_
     """In processes that find none of the packages, the workers of a sweep too."""
     absent = dict.fromkeys((*EXTRAS["report"], "vtkmodules", *EXTRAS["html"]))
     (tmp_path / "sitecustomize.py").write_text(f"import sys\nsys.modules.update({absent})")
-    for name, text in (("s.toml", SPHERE), ("study.toml", STUDY), ("core.py", CORE)):
+    for name, text in (("s.toml", scene_text()), ("study.toml", STUDY), ("core.py", CORE)):
         (tmp_path / name).write_text(text)
     environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{ROOT}", "SAMFEM_STORE": str(tmp_path / "store")}
     how = {"text": True, "cwd": tmp_path, "env": environment, "capture_output": True, "check": True}

@@ -4,7 +4,7 @@
 import json
 
 import pytest
-from builders import PERFECT, SPHERE, STEEL, scene_text
+from builders import MODULUS, PERFECT, RADIUS, SPHERE, STEEL, scene_text
 
 from sam import choose_grid
 from sam.scene import Result, Scene, SceneError, Status
@@ -23,12 +23,6 @@ def asked(accuracy: float, tables=YIELDING, **more) -> Scene:
     return Scene(**tables | {"solver": {"accuracy": accuracy} | more})
 
 
-def in_radius(scene: Scene) -> float:
-    """Cells in the contact radius of an elastic sphere."""
-    exact = CircularContact(scene.loading.force, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2))
-    return exact.contact_radius / choose_grid(scene).hx
-
-
 def test_the_cells_and_steps_come_from_the_table():
     """More for a smaller error, as its square root; no fewer than three grids can be made of."""
     coarse, fine = (expected(asked(each), SAM) for each in (0.05, 0.0125))
@@ -38,7 +32,8 @@ def test_the_cells_and_steps_come_from_the_table():
     assert expected(asked(0.005), SAM).steps > 6
     scene = chosen_scene(asked(0.0125), SAM, fine)
     assert scene.solver.accuracy is None and scene.solver.uncertainty and scene.loading.steps == fine.steps
-    assert in_radius(scene) == pytest.approx(fine.cells, rel=0.15)
+    in_radius = CircularContact(scene.loading.force, RADIUS, MODULUS).contact_radius / choose_grid(scene).hx
+    assert in_radius == pytest.approx(fine.cells, rel=0.15)
     assert chosen_scene(asked(0.05), FEM, first_choice(asked(0.05), FEM)).fem.cells_per_radius == 10
     assert first_choice(asked(0.05, ELASTIC), SAM).steps == 0
     assert first_choice(asked(1e-3), SAM) == Choice(4.2 * 1.4**2, 6)  # of what yields the fewest
@@ -154,5 +149,5 @@ def test_the_command_reaches_it(folder, samfem):
     summary = json.loads((folder / "sphere-sam" / "summary.json").read_text())
     found = summary["discretisation"]["accuracy"]
     assert found["reached"] and found["quantity"] == "p_max_Pa" and found["relative"] <= 0.01
-    exact = CircularContact(0.65, SPHERE["radius"], STEEL["young"] / (1 - 0.3**2)).peak_pressure
+    exact = CircularContact(0.65, RADIUS, MODULUS).peak_pressure
     assert abs(summary["quantities"]["p_max_Pa"] / exact - 1) < 0.01

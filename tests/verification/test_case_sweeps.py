@@ -3,12 +3,11 @@
 
 from dataclasses import replace
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
-from made_results import context
+from made_results import Made, context
 
 from sam.scene import SceneError
 from verification.cases import case_of
@@ -56,9 +55,7 @@ def made(tmp_path):
             "contact_radius_m": exact.contact_radius,
             "approach_m": None if n == 9 else exact.approach,
         }
-        return SimpleNamespace(
-            model=model, quantities=quantities, discretisation={"cell_m": (h, h)}, converged=True
-        )
+        return Made(quantities, model=model, discretisation={"cell_m": (h, h)})
 
     def case(extra=""):
         path = tmp_path / "made.toml"

@@ -83,6 +83,17 @@ def test_the_worst_scene_counts_and_a_condition_without_one_is_no_success():
 # --- perturbed answers: (scene, result, records) -> the same, of which something is wrong ---
 
 
+def with_peak(records):
+    """The trees of the records, and the first of these under the largest force."""
+    trees = [record.tree() for record in records]
+    return trees, max(trees, key=lambda tree: tree["state"]["load"]["force"])
+
+
+def kept(trees):
+    """Records with these trees."""
+    return [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
+
+
 def returned(change):
     """By a change of the result alone."""
     return lambda scene, result, records: (scene, change(result), records)
@@ -122,22 +133,20 @@ def material(name, factor, component=..., *, always=False):
     """A field of the plastic points, or their stress, times a factor: under the largest force or always."""
 
     def change(scene, result, records):
-        trees = [record.tree() for record in records]
-        peak = max(trees, key=lambda tree: tree["state"]["load"]["force"])
+        trees, peak = with_peak(records)
         for tree in trees if always else [peak]:
             owner = tree["last"] if name == "stress" else tree["state"]["material"]["points"]
             owner[name] = np.array(owner[name])
             owner[name][component] *= factor
-        return scene, result, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees]
+        return scene, result, kept(trees)
 
     return change
 
 
 def with_film(scene, **factors):
     """The scene with constants of its film times factors."""
-    film = scene.body.coating
-    film = film.model_copy(update={key: factor * getattr(film, key) for key, factor in factors.items()})
-    return scene.model_copy(update={"body": scene.body.model_copy(update={"coating": film})})
+    new = {key: factor * getattr(scene.body.coating, key) for key, factor in factors.items()}
+    return with_keys(scene, "body.coating", **new)
 
 
 def film_of(key):
@@ -161,8 +170,7 @@ def jump_of(component):
 
 
 def decoupled(scene, result, records):
-    friction = scene.friction.model_copy(update={"coupling": False})
-    return scene.model_copy(update={"friction": friction}), result, records
+    return with_keys(scene, "friction", coupling=False), result, records
 
 
 def flowed(what):
@@ -329,13 +337,12 @@ def test_a_wrong_state_of_a_chemical_film_is_seen(solve):
 
     def states(change):
         """Of other film states at the peak: change(pressure, state) before they are measured."""
-        trees = [record.tree() for record in records]
-        peak = max(trees, key=lambda each: each["state"]["load"]["force"])
+        trees, peak = with_peak(records)
         film = peak["tribofilm"]
         state = film["film"] = {name: np.array(values) for name, values in film["film"].items()}
         pressure, window = film_checks.pressure_of(scene, peak), peak["extent"]["window"]
         change(around(pressure, window, state["failed"].shape), state)
-        return film_checks.states(scene, [SimpleNamespace(tree=lambda tree=tree: tree) for tree in trees])
+        return film_checks.states(scene, kept(trees))
 
     def mended(pressure, state):
         state["failed"][np.unravel_index(pressure.argmax(), pressure.shape)] = False
@@ -343,8 +350,7 @@ def test_a_wrong_state_of_a_chemical_film_is_seen(solve):
     most = LIMITS["rough-film"]
     assert states(lambda _, state: np.multiply(state["plastic"], 1.001, state["plastic"])) > most
     assert states(mended) > most and states(lambda _, state: state["failed"].fill(False)) >= 1
-    friction = scene.friction.model_copy(update={"strain_limit": 1e-4})
-    assert film_checks.states(scene.model_copy(update={"friction": friction}), records) > most
+    assert film_checks.states(with_keys(scene, "friction", strain_limit=1e-4), records) > most
 
 
 UNIAXIAL = np.array([1.0, 0, 0, 0, 0, 0])[:, None]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_results import Made
+from made_results import Made, of_plane
 
 from sam.scene import Result, load_scene
 from verification.cases.case import with_keys
@@ -23,12 +23,6 @@ SLIDING, ASPERITIES = (
 # --- coated spheres -------------------------------------------------------------------------------------
 
 
-def plane(x, z, field) -> dict:
-    """The table of a field in y = 0."""
-    gx, gz = (grid.ravel() for grid in np.meshgrid(x, z, indexing="ij"))
-    return {"state": ["peak"] * gx.size, "x_m": gx, "z_m": gz, "mises_Pa": field(gx, gz)}
-
-
 def test_film_and_body_are_never_mixed():
     """A field that jumps at the interface and is linear below it, on other points than those of SAM."""
 
@@ -36,13 +30,14 @@ def test_film_and_body_are_never_mixed():
         return np.where(z < 0.2e-6 * (1.0 - 1e-9), 100.0, 2.0 + 1e6 * (x + 3.0 * z))
 
     u, w = 1e-6 * (np.arange(-10, 10) + 0.5) / 10, 1e-6 * np.append(0.2, (np.arange(2, 10) + 0.5) / 10)
-    fem = Made({}, {"plane": plane(u, np.union1d(w, [0.05e-6]), field)})
+    fem = Made({}, {"plane": of_plane(u, np.union1d(w, [0.05e-6]), "mises_Pa", field)})
     found = in_body(fem, np.array([0.0, 0.33e-6]), np.array([0.1e-6, 0.3e-6, 0.61e-6]), 0.2e-6)
     assert np.isnan(found[:, 0]).all()
     exact = 2.0 + np.array([[0.0], [0.33]]) + 3.0 * np.array([[0.3, 0.61]])
     assert found[:, 1:] == pytest.approx(exact, rel=1e-12)
     scene = with_keys(SLIDING, "body.coating", thickness=0.2e-6)
-    sam = Made({}, {"plane": plane(np.linspace(-1.6e-6, 1.6e-6, 52), np.arange(41) * 0.04e-6, field)})
+    x, z = np.linspace(-1.6e-6, 1.6e-6, 52), np.arange(41) * 0.04e-6
+    sam = Made({}, {"plane": of_plane(x, z, "mises_Pa", field)})
     for factor in (1.0, 1.02):
         scaled = fem.tables["plane"] | {"mises_Pa": factor * fem.tables["plane"]["mises_Pa"]}
         both = QUANTITIES["mises-below-film"].between(scene, sam, replace(fem, tables={"plane": scaled}))
@@ -59,14 +54,13 @@ def asperities(load=1.0, strain=1.0, dent=1.0) -> Result:
     p, z = np.zeros((12, 12)), np.linspace(0.1e-6, 3e-6, 24)
     for k, value in zip((2, 6, 10), (4e9 * load, 3e9, 2e9), strict=True):
         p[k - 1 : k + 1, 5:7] = value
-    peeq = np.full((12, 1), 0.01) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
-    peeq *= strain
     xx, yy = np.meshgrid(x, x, indexing="ij")
     surface = {"x_m": xx.ravel(), "y_m": yy.ravel(), "p_Pa": p.ravel(), "state": ["peak"] * 144}
-    below = plane(x, z, lambda *_: peeq.ravel())
+    plane = of_plane(x, z, "peeq", lambda _, z: 0.01 * strain * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2)))
+    plane["mises_Pa"] = plane["peeq"]
     uz = np.where(x < -2e-6, dent, 1.0) * 5e-9 * np.cos(x * 1e6) ** 2
     line = {"x_m": x, "uz_m": uz, "state": ["unloaded"] * 12}
-    tables = {"surface": surface, "plane": below | {"peeq": below["mises_Pa"]}, "line": line}
+    tables = {"surface": surface, "plane": plane, "line": line}
     return Result("made", "converged", {}, tables)
 
 

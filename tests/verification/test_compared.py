@@ -29,18 +29,14 @@ def test_the_frame_and_the_line_say_what_the_rows_say(counted):
     line = f"{len(used)} of {len(used)} agree, closest {closest} at {100 * used[closest]:.0f} % of its "
     line += "tolerance; "
     assert re.fullmatch(re.escape(line) + r"SAM [0-9.]+ s, FEM [0-9.]+ s", found.line)
-
-
-def test_every_row_that_fails_is_named(counted):
     found = judged({"p_max_Pa": "1e-9 %", "approach_m": 1e-11})
     assert {row.quantity for row in found.failed} == {"p_max_Pa", "approach_m"} and not found.passed
 
 
 def test_a_model_that_did_not_converge_is_named_and_nothing_passes(counted):
     found = judged()
-    worse = replace(
-        found, fem=replace(found.fem, status=Status.STEP_CUT_LIMIT, message="raise loading.steps")
-    )
+    fem = replace(found.fem, status=Status.STEP_CUT_LIMIT, message="raise loading.steps")
+    worse = replace(found, fem=fem)
     assert not worse.passed and worse.line.startswith("fem-axisymmetric ended with step-cut-limit; ")
 
 
@@ -56,9 +52,8 @@ def test_a_tolerance_that_is_given_stands_before_that_of_the_scene_and_that_befo
     for name in of_scene:  # the difference stays, and what it would have been is said
         assert rows[name].error == default[name].error
         assert rows[name].passed == (rows[name].error <= rows[name].row.tolerance)
-        assert (
-            f"without it {default[name].row.tolerance:g}: {default[name].row.reason}" in rows[name].row.reason
-        )
+        row = default[name].row
+        assert f"without it {row.tolerance:g}: {row.reason}" in rows[name].row.reason
 
 
 def test_a_tolerance_of_the_largest_strain_is_not_one_of_its_depth(counted):

@@ -26,12 +26,6 @@ SINGLE = 1e-6
 SIDE = 12e-6
 
 
-def smooth() -> Scene:
-    """A rigid sphere on a body that yields."""
-    loading, fem = {"force": 0.05, "steps": 2, "unload": True}, {"cells_per_radius": 8, "box": 5}
-    return small_scene(body={"plasticity": PERFECT}, loading=loading, fem=fem)
-
-
 def rough(n: int) -> Scene:
     """One summit beside the origin, yielding and sliding: no component vanishes under the origin."""
     x = ((np.arange(n) + 0.5) / n - 0.5) * SIDE
@@ -47,7 +41,12 @@ def rough(n: int) -> Scene:
     )
 
 
-CASES = {models.SAM: rough(17), models.FEM: smooth(), models.FEM_3D: rough(16)}
+SMOOTH = small_scene(
+    body={"plasticity": PERFECT},
+    loading={"force": 0.05, "steps": 2, "unload": True},
+    fem={"cells_per_radius": 8, "box": 5},
+)
+CASES = {models.SAM: rough(17), models.FEM: SMOOTH, models.FEM_3D: rough(16)}
 """On 17 cells nodes of SAM's plane lie under the origin, on 16 the middle of an element does."""
 STATES = {"peak": "", "unloaded": "-unloaded"}
 OURS = {"xx": 1.0, "yy": 1.0, "zz": 1.0, "yz": -1.0, "xz": -1.0, "xy": 1.0}
@@ -75,14 +74,6 @@ def written(request, solved):
     return solved(request.param)
 
 
-def in_record(result, name: str, state: str) -> np.ndarray:
-    """The values of fields.vtu in the record, (n, 6), in the order of the file."""
-    if result.model == models.SAM:
-        values = result.grids[state]["plane"].point_data[name]
-        return values.reshape(*values.shape[:-3], -1).T
-    return result.bodies[state].cell_data[name]
-
-
 def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
     """Principal values, largest first, (3, n)."""
     tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -1)
@@ -93,7 +84,11 @@ def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
 @pytest.mark.parametrize("name", ["stress_Pa", "plastic_strain"])
 def test_components_have_the_names_order_and_turned_values_that_vtk_expects(written, name, state):
     grid = pyvista.read(written[1].folder / f"fields{STATES[state]}.vtu")
-    of_points, values = name in grid.point_data, in_record(written[0], name, state)
+    of_points, result = name in grid.point_data, written[0]
+    if of_points:
+        values = result.grids[state]["plane"].point_data[name].reshape(6, -1).T
+    else:
+        values = result.bodies[state].cell_data[name]
     array = (grid.GetPointData() if of_points else grid.GetCellData()).GetArray(name)
     names = tuple(array.GetComponentName(k) for k in range(array.GetNumberOfComponents()))
     assert names == TENSOR_NAMES == ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
@@ -128,11 +123,8 @@ def test_every_file_is_listed_in_order_reads_without_gaps_and_says_where_z_point
     for name in listed:
         mesh = pyvista.read(run.folder / name)
         head = (run.folder / name).read_text(encoding="utf-8").splitlines()[1]
-        assert (
-            (head if name.endswith(".vtu") else mesh.field_data["axes"][0])
-            .lstrip("<!- ")
-            .startswith("z points up")
-        )
+        said = head if name.endswith(".vtu") else mesh.field_data["axes"][0]
+        assert said.lstrip("<!- ").startswith("z points up")
         assert mesh.n_cells > 0 and mesh.bounds[5] <= 0.0 and mesh.length > 0.0
         if name == {models.SAM: "body.vtr", models.FEM_3D: "fields.vtu"}.get(result.model):
             assert mesh.compute_cell_sizes()["Volume"].min() > 0.0  # of an element turned inside out: below

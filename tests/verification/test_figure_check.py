@@ -1,6 +1,4 @@
-"""What cannot be read in a figure is found: each rule on a figure that breaks it, nothing on a good one; and
-the figure of a sweep has each value at its point.
-"""
+"""Each rule of a figure finds what breaks it, and a sweep is drawn with each value at its point."""
 
 import numpy as np
 import pytest
@@ -13,17 +11,6 @@ from verification.figures.sweep import summary
 from verification.runs.study import read_study
 
 X = np.linspace(0.0, 10.0, 21)
-
-
-def two_lines(axis):
-    axis.plot(X, X, color=BLUE, label="one")
-    axis.plot(X, 2.0 * X, color=VERMILION, linestyle="--", label="two")
-    axis.set(xlabel="$x$ [µm]", ylabel="pressure [GPa]")
-
-
-def good(figure, axis):
-    two_lines(axis)
-    axis.legend()
 
 
 def named_beside(figure, axis):
@@ -62,7 +49,10 @@ def beyond_the_sheet(figure, axis):
 )
 def test_a_broken_rule_is_found_and_a_good_figure_has_none(change, expected):
     with sheet(4.0, 3.0) as (figure, axis):
-        good(figure, axis)
+        axis.plot(X, X, color=BLUE, label="one")
+        axis.plot(X, 2.0 * X, color=VERMILION, linestyle="--", label="two")
+        axis.set(xlabel="$x$ [µm]", ylabel="pressure [GPa]")
+        axis.legend()
         change(figure, axis)
     found = findings(figure)
     assert (expected in " ".join(found)) if expected else found == []

@@ -107,9 +107,8 @@ def test_a_plastic_scene_reads_back_with_its_curve(tmp_path):
 
 def test_what_is_no_number_is_null_in_json_and_empty_in_csv(tmp_path):
     rows = table(LINE, 2) | {"gap_m": [None, math.nan], "p_Pa": [math.inf, np.float32(0.5)]}
-    write_run(
-        a_result(tables={"line": rows}, certificate={"x": math.inf, "y": np.float64("nan")}), SCENE, tmp_path
-    )
+    none = {"x": math.inf, "y": np.float64("nan")}
+    write_run(a_result(tables={"line": rows}, certificate=none), SCENE, tmp_path)
     text = (tmp_path / "summary.json").read_text(encoding="utf-8")
     summary = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert summary["certificate"] == {"x": None, "y": None}

@@ -70,28 +70,6 @@ def test_the_pressure_in_a_ball_is_that_of_an_expanding_cavity():
     assert ball.total() == pytest.approx(8 * np.pi / 300 * (6 * np.log(zone) - 5 / 3), rel=1e-4)
 
 
-@pytest.mark.parametrize("profile", ["smooth", "ball", "gauss"])
-def test_profiles_have_the_mean_of_their_misfit_strain(profile):
-    x, w = np.polynomial.legendre.leggauss(200)
-    for end in (0.03, 0.04999, 0.05001, 0.5, 0.99, 1.7):
-        local, excess = misfit_sphere.PROFILES[profile](np.array(end))
-        inner = min(end, 1.0) if profile == "ball" else end
-        at = inner * (x + 1) / 2
-        mean = 3 / end**3 * inner / 2 * (misfit_sphere.PROFILES[profile](at)[0] * at**2 * w).sum()
-        assert excess == pytest.approx(mean - local, abs=1e-6)
-
-
-def test_stress_is_that_of_the_radial_fields():
-    sphere = GrowingSphere(YOUNG, NU, linear, 0.02, A)
-    r = 0.8 * A
-    deviator, radial = float(sphere.fields(r).deviator), float(sphere.radial_stress(r))
-    across = radial + deviator
-    assert sphere.stress(0.0, 0.0, r) == pytest.approx([across, across, radial, 0, 0, 0], abs=1.0)
-    half = (across + radial) / 2
-    s = r / np.sqrt(2)
-    assert sphere.stress(s, 0.0, s) == pytest.approx([half, across, half, 0, -deviator / 2, 0], abs=1.0)
-
-
 @pytest.mark.parametrize("name", ["radius", "misfit", "profile", "nu"])
 def test_bad_input_is_named(name):
     good = {"young": YOUNG, "nu": NU, "law": linear, "misfit": 0.02, "radius": 1.0}

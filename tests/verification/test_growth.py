@@ -56,9 +56,7 @@ def test_a_process_measures_its_own_memory_and_one_thread(idle):
     large = np.ones(40_000_000)
     assert large.nbytes > 2 * idle
     del large
-    assert (
-        idle_bytes(SAM) < 1.3 * idle
-    )  # of its own; more than twice as much if it began with that of this process
+    assert idle_bytes(SAM) < 1.3 * idle  # more than twice as much if it began with that of this process
     assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
 
 
@@ -103,10 +101,8 @@ def test_a_count_may_grow_by_two_or_a_twentieth(ffts, wrong):
     assert (row["time ratio"], row["time ratio of pairs"], row["time [s]"]) == (1.5, "1.00 to 3.00", 1.5)
     assert row["counts"].startswith(f"ffts 100 {ffts - 100:+d}") and row["most different"] == "p_max_Pa"
     assert row["difference"] == pytest.approx(0.1)
-    assert (
-        red("published-code", of_frame("published-code", pd.DataFrame([{"sweep": "", "model": ""} | row])))
-        == wrong
-    )
+    frame = pd.DataFrame([{"sweep": "", "model": ""} | row])
+    assert red("published-code", of_frame("published-code", frame)) == wrong
 
 
 def test_the_scenes_for_the_published_code_are_read_and_can_be_solved():

@@ -41,9 +41,8 @@ FROM_SCENE = [0, 2, 1, 4, 5, 3]
 def abaqus_mesh(fem) -> pyvista.UnstructuredGrid:
     """The axisymmetric result in mm and MPa, y upwards."""
     points, quads = np.asarray(fem.fields.points), np.asarray(fem.fields.cells["quad"])
-    mesh = pyvista.UnstructuredGrid(
-        {pyvista.CellType.QUAD: quads}, 1e3 * points[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
-    )
+    places = 1e3 * points[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    mesh = pyvista.UnstructuredGrid({pyvista.CellType.QUAD: quads}, places)
     mesh.point_data["CPRESS"] = np.asarray(fem.fields.point_data["p_Pa"]) * 1e-6
     uz = np.asarray(fem.fields.point_data["uz_m"])
     mesh.point_data["U"] = np.stack([0 * uz, -1e3 * uz, 0 * uz], axis=1)
@@ -102,12 +101,6 @@ def mapped(tmp_path):
     return write
 
 
-def table_of(result, name: str, *columns: str) -> pd.DataFrame:
-    """Some columns of a table of a result at peak load."""
-    table = pd.DataFrame({column: np.asarray(values) for column, values in result.tables[name].items()})
-    return table[table["state"] == "peak"][list(columns)] if "state" in table else table[list(columns)]
-
-
 def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, tmp_path):
     """The finite-element run as data gives the rows of SAM and FEM; only the order of a sum may differ."""
     write_run(results[1], SCENE, tmp_path / "own")
@@ -122,7 +115,8 @@ def test_a_run_beside_both_models_is_compared_as_the_model_is(results, beside, t
 
 
 def test_a_history_gives_the_quantities_of_its_largest_force(results, beside, tmp_path):
-    history = table_of(results[1], "history", "force_N", "approach_m", "contact_area_m2")
+    columns = "force_N", "approach_m", "contact_area_m2"
+    history = pd.DataFrame({name: results[1].tables["history"][name] for name in columns})
     history["approach_m"] *= 1.01
     history.assign(force_N=history["force_N"] / 4).to_csv(tmp_path / "quarter.csv", index=False)
     rows, _ = beside("quarter.csv")  # of the body

@@ -17,6 +17,7 @@ from verification.judging import evaluate
 from verification.peers import elastic, plastic, problems, running
 from verification.peers.programs import sam as ours
 from verification.peers.running import SAM, TAMAAS, VARIABLE, Job, Measurement
+from verification.references import contact_of
 from verification.rows import load_rows
 from verification.suite.verify import main
 
@@ -31,24 +32,21 @@ class TestProblems:
 
     def test_step_is_three_times_the_yield_stress_in_the_scene_too(self):
         scene = ours.scene_of(32, 16, 1e-3)
-        e_star = scene.body.young / (1 - scene.body.poisson**2)
-        force, radius = scene.loading.force, scene.counterbody.radius
-        a = (3 * force * radius / (4 * e_star)) ** (1 / 3)
-        p0 = 2 * e_star * a / (math.pi * radius)
+        exact = contact_of(scene)
+        a, p0 = exact.contact_radius, exact.peak_pressure
         assert (a, p0) == pytest.approx((ours.RADIUS_M, 3 * scene.body.plasticity.yield_stress), rel=1e-12)
         assert scene.grid.extent[0] == pytest.approx(6 * a, rel=1e-12) and scene.loading.steps == 1
 
 
-def timed(cells, seconds, label="", converged=True):
-    """A measurement of one round."""
-    job = Job(problems.HERTZ, cells, {"tolerance": 1e-5}, label)
-    return Measurement(job, [0.0], [seconds], record={"converged": converged, "peak_memory_bytes": 1e8})
-
-
 def rows(**found) -> pd.DataFrame:
     """Of programs whose error is 0.01/n^2: (seconds for n = 1, label) of each curve."""
+    record = {"converged": True, "peak_memory_bytes": 1e8}
     own = {
-        program: [timed(n, each * n, label) for each, label in curves for n in (10, 100)]
+        program: [
+            Measurement(Job(problems.HERTZ, n, {"tolerance": 1e-5}, label), [0.0], [each * n], record=record)
+            for each, label in curves
+            for n in (10, 100)
+        ]
         for program, curves in found.items()
     }
     return pd.DataFrame(running.rows_of("hertz", own, lambda m: 0.01 / m.job.cells**2))
@@ -123,11 +121,8 @@ class TestRounds:
         for name, value in {"SIZES": (48, 192, 256), "ROUGH_SIZES": (160,), "COMPARED": (192,)}.items():
             monkeypatch.setattr(elastic, name, value)
         monkeypatch.setattr(elastic, "disagreements", lambda *_: {"tamaas": 1e-9, "contact_mechanics": 1e-8})
-        for name, value in {
-            "GRIDS": ((16, 8),),
-            "COMPARED": ((16, 8),),
-            "OWN_GRIDS": ((11, 8), (15, 11)),
-        }.items():
+        grids = {"GRIDS": ((16, 8),), "COMPARED": ((16, 8),), "OWN_GRIDS": ((11, 8), (15, 11))}
+        for name, value in grids.items():
             monkeypatch.setattr(plastic, name, value)
         monkeypatch.setattr(peers, "MESHES", (8, 12))
         context = Context("peers", tmp_path, "quick", lambda *_: None)

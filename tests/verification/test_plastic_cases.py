@@ -5,14 +5,21 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from made_results import Made, square_mesh
+from made_results import Made, of_plane, square_mesh
 
 from verification.cases.compared import refinement
 from verification.cases.recipes import layer_faces
 from verification.judging import error_of
 from verification.quantities import QUANTITIES, Solved
 from verification.reference.convergence import extrapolate
-from verification.runs.sampling import means_of_cells, means_of_line, ring_edges
+from verification.runs.sampling import (
+    means_of_cells,
+    means_of_line,
+    plane_field_on,
+    pressure_on,
+    ring_edges,
+    surface_pressure,
+)
 
 
 def cone(cells: int, top: float) -> Made:
@@ -34,9 +41,8 @@ def test_what_refinement_allows(name):
     scene = SimpleNamespace(body=SimpleNamespace(plasticity=True))
     sam, fem = cone(33, 1.02), line(1.0)
     coarser = (cone(17, 1.02 - 0.007), 8 / 7), (line(0.995), 2.0)
-    of_sam, of_fem, apart, allowed = refinement(
-        Solved(scene, None, {"sam": sam, "fem": fem}, coarser=coarser), QUANTITIES[name]
-    )
+    found = Solved(scene, None, {"sam": sam, "fem": fem}, coarser=coarser)
+    of_sam, of_fem, apart, allowed = refinement(found, QUANTITIES[name])
     if name == "peeq-max":
         expected = 7 * 0.007 / 1.013, 0.005 / 0.995, 0.02
     else:
@@ -55,6 +61,33 @@ def test_the_second_cycle_is_held_against_the_first_peak():
     peeq = QUANTITIES["peeq-reloaded"].against("peeq-reloaded", made, None)
     assert (peeq.value, peeq.expected) == (0.011, 0.01)
     assert QUANTITIES["approach-reloaded"].of(made, None) == pytest.approx(1e-3, rel=1e-9)
+
+
+class TestSampling:
+    def test_unequal_cells_keep_their_directions(self):
+        nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])
+        quads = np.array([[k, k + 4, k + 5, k + 1] for k in (0, 1, 2, 4, 5, 6)])
+        x, y, p = surface_pressure(nodes, quads, np.arange(6.0))
+        assert x.tolist() == [1.0, 3.0] and y.tolist() == [0.5, 1.5, 2.5]
+        assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
+
+    def test_hertz_pressure_is_interpolated_to_rounding(self):
+        """p^2 is quadratic in r: lines between nodes 1/400 apart err by 1/(8 * 400^2) of p0^2."""
+        r = np.linspace(0.0, 2.0, 801)
+        line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
+        x, y = np.array([-0.31, 0.123]), np.array([0.4567])
+        exact = 1.0 - (x[:, None] ** 2 + y**2)
+        assert np.abs(pressure_on(x, y, {"line": line}) ** 2 - exact).max() <= 1.0 / (4.0 * 400**2)
+
+    def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
+        r, z = np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)
+        plane = of_plane(r, z, "mises_Pa", lambda _, z: 2.0 + 5.0 * z)
+        x, depths = np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0])
+        field = plane_field_on(x, depths, {"plane": plane}, "mises_Pa")
+        assert np.isnan(field[:, 0]).all() and np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)
+        whole = of_plane(2.0 * (r - 1.5), z, "mises_Pa", lambda x, _: 3.5 + x / 2.0)  # not symmetric
+        field = plane_field_on(np.array([-1.0, 0.7]), np.array([0.5]), {"plane": whole}, "mises_Pa")
+        assert np.allclose(field[:, 0], [3.0, 3.85], rtol=1e-12)
 
 
 class TestRings:

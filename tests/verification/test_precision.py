@@ -108,11 +108,8 @@ def test_ratios_are_of_the_times_to_an_error_that_both_reach():
     with its finest point, that in space at 0.5/32; nothing is compared below three times the floor.
     """
     of = {COUPLED: (0.3, 1e-3), AXISYMMETRIC: (1.0, 2e-3), SPATIAL: (0.5, 0.5)}
-    rows = pd.DataFrame(
-        {"method": name, "error": f / n, "cpu_s": s * n**2, "floor": 0.0}
-        for name, (f, s) in of.items()
-        for n in (4, 8, 16, 32)
-    )
+    points = [(name, f / n, s * n**2, 0.0) for name, (f, s) in of.items() for n in (4, 8, 16, 32)]
+    rows = pd.DataFrame(points, columns=["method", "error", "cpu_s", "floor"])
     assert case.ratio_at_one(rows, "") == pytest.approx(30**2 * 1e-3 / (2e-3 * 32**2), rel=1e-12)
     assert case.ratio_at_a_third(rows, "") == math.inf  # 0.3/32 is 0.9 %
     ratio, error = case.faster(rows, SPATIAL)

@@ -6,9 +6,11 @@ import json
 from dataclasses import replace
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
-from builders import scene_text
+from builders import parsed, scene_text
 from fake_case import FakeCase, row
+from made_results import context
 from matplotlib.lines import Line2D
 from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS
@@ -18,6 +20,7 @@ from verification.cases.case import Outcome, Plot, SmallTable
 from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
+from verification.runs import models
 from verification.runs.files import FolderError
 from verification.suite import verify
 
@@ -32,6 +35,14 @@ def sketch():
     figure = new_figure(1.0, 0.7, "none")
     figure.add_artist(Line2D([0.0, 1.0], [0.0, 1.0]))
     return Drawing(figure, {"x": [0.0, 1.0], "y": [0.0, 1.0]})
+
+
+def solved(context, gate) -> Outcome:
+    """What a case finds that solves COARSE: its largest pressure, 1 % off, and a figure."""
+    p = context.solve(models.SAM, COARSE, "sam").quantities["p_max_Pa"]
+    outcome = Outcome({gate: Measured(np.float64(p * 1.01), p)})
+    outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
+    return outcome
 
 
 def good(context):
@@ -117,6 +128,24 @@ def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
     assert [path.name for path in tmp_path.rglob("*")] == ["holiday.png"]
 
 
+def test_a_case_of_the_suite_from_end_to_end(tmp_path, monkeypatch):
+    """The ellipse is the quickest; its report holds the page, the figures and the run."""
+    monkeypatch.undo()
+    assert run(tmp_path, "hertz-ellipse") == 0
+    assert (tmp_path / "elastic.html").stat().st_size > 0
+    assert (tmp_path / "runs/hertz-ellipse/sam/summary.json").stat().st_size > 0
+    for kind in ("png", "csv.gz"):
+        assert (tmp_path / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
+
+
+def test_a_solve_that_does_not_converge_breaks_its_case_off(tmp_path):
+    here = context("test", tmp_path)
+    small = parsed(add='[grid]\nextent = ["5 um", "5 um"]\n')  # than the contact
+    with pytest.raises(RuntimeError, match="grid-edge"):
+        here.solve(models.SAM, small, "sam")
+    assert here.runs == ["runs/test/sam"]
+
+
 def test_earlier_report_is_replaced(tmp_path):
     out = tmp_path / "out"
     run(out, "good")
@@ -193,9 +222,8 @@ def test_junit_has_one_testcase_a_gate(tmp_path):
     run(tmp_path / "out")
     suites = list(ElementTree.parse(tmp_path / "out" / "junit.xml").getroot())
     kinds = "failure", "error", "skipped"
-    said = {
-        s.get("name"): [int(s.get(key)) for key in ("tests", "failures", "errors", "skipped")] for s in suites
-    }
+    keys = "tests", "failures", "errors", "skipped"
+    said = {s.get("name"): [int(s.get(key)) for key in keys] for s in suites}
     held = {s.get("name"): [len(s), *(len(s.findall(f"testcase/{kind}")) for kind in kinds)] for s in suites}
     assert held == said
     assert said == {"good": [2, 0, 0, 0], "bad": [1, 1, 0, 0], "broken": [2, 1, 1, 0], "slow": [1, 0, 0, 1]}

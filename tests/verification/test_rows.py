@@ -8,10 +8,21 @@ import pytest
 from fake_case import row
 
 from sam.scene import SceneError
+from verification.cases import LEVELS, all_cases
 from verification.judging import Measured, Row, RowStatus, error_of, evaluate, judge
 from verification.rows import Take, load_rows, read_cases
+from verification.suite.forecast import costs_at
 
 GATES = load_rows()
+
+
+def test_gates_and_cases_belong_together():
+    cases = all_cases()
+    assert {gate.case for gate in GATES} == set(cases)
+    assert all(set(case.levels) <= set(LEVELS) for case in cases.values())
+    # those of no level need other programs
+    assert [name for name, case in cases.items() if not case.levels] == ["periodic-peers", "peers"]
+    assert set(costs_at("quick")) == {name for name, case in cases.items() if "quick" in case.levels}
 
 
 def synthetic(gate: Row, share: float) -> Measured:
@@ -101,10 +112,8 @@ def test_values_that_do_not_fit_the_metric_fail(metric, measured):
 
 def test_l2_is_weighted():
     value, expected, weight = np.array([1.0, 3.0]), np.array([1.0, 2.0]), np.array([3.0, 1.0])
-    # by hand: sqrt(1 * 1^2 / (3 * 1^2 + 1 * 2^2)) = sqrt(1/7)
-    assert error_of("relative_l2", Measured(value, expected, weight)) == pytest.approx(
-        math.sqrt(1.0 / 7.0), rel=1e-15
-    )
+    found = error_of("relative_l2", Measured(value, expected, weight))
+    assert found == pytest.approx(math.sqrt(1.0 / 7.0), rel=1e-15)  # 1 * 1^2 / (3 * 1^2 + 1 * 2^2)
 
 
 FILE = """

@@ -14,92 +14,41 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 import pytest
-from builders import running_in
+from builders import LINEAR, running_in, scene
 from matplotlib.collections import QuadMesh
 
-from sam.scene import Scene
 from verification.cost.contact import hertz_of
 from verification.figures.run import drawings_of, history
 from verification.runs import models
 from verification.runs.files import Run, read_run, write_run
 
-BODY = {"young": 210e9, "poisson": 0.3}
-SOFT = BODY | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
-SPHERE = {"shape": "sphere", "radius": 105e-6}
+SOFT, PRESSED = {"plasticity": LINEAR}, {"force": 0.1, "steps": 2}
 WAVE = {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6}
 TRAVELLING = {"prescribed": "hertz", "p0": 2.5e9, "radius": 5e-6, "steps": 1}
 
 
-def with_body(body: dict, **sections) -> dict:
-    return {"body": body, "loading": {"force": 0.1, "steps": 2}, **sections}
-
-
+TRAVELLING |= {"path": {"start": (-3e-6, 0.0), "end": (4e-6, 3e-6), "steps": 2}}
+ELLIPSE = {"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 100e-6}
+WIDE, WIDER = {"cells": (32, 32), "extent": (16e-6, 16e-6)}, {"cells": (31, 31), "extent": (30e-6, 30e-6)}
 SCENES = {
-    "sphere": with_body(
-        SOFT, counterbody=SPHERE, loading={"force": 0.05, "steps": 1}, grid={"cells": (33, 33)}
-    ),
-    "ellipse": with_body(
-        BODY,
-        counterbody={"shape": "ellipsoid", "radius_x": 400e-6, "radius_y": 100e-6},
-        grid={"cells": (65, 65)},
-    ),
-    "cut off": with_body(
-        BODY, counterbody={"shape": "flat"}, surface=WAVE, grid={"cells": (32, 32), "extent": (16e-6, 16e-6)}
-    ),
-    "travelling": with_body(
-        SOFT,
-        loading=TRAVELLING | {"path": {"start": (-3e-6, 0.0), "end": (4e-6, 3e-6), "steps": 2}},
-        grid={"cells": (31, 31), "extent": (30e-6, 30e-6)},
-    ),
+    "sphere": scene(body=SOFT, loading={"force": 0.05, "steps": 1}, grid={"cells": (33, 33)}),
+    "ellipse": scene(counterbody=ELLIPSE, loading=PRESSED, grid={"cells": (65, 65)}),
+    "cut off": scene(counterbody={"shape": "flat"}, loading=PRESSED, surface=WAVE, grid=WIDE),
+    "travelling": scene(body=SOFT, loading=TRAVELLING, grid=WIDER),
+    "worn": running_in(),
 }
 
 
 @cache
 def run_of(name: str) -> Run:
     """A scene solved by SAM, read back from files that stay until the tests end."""
-    scene = running_in() if name == "worn" else Scene(**SCENES[name])
     folder = TemporaryDirectory()
-    write_run(models.solve(scene, models.SAM), scene, folder.name, {})
+    write_run(models.solve(SCENES[name], models.SAM), SCENES[name], folder.name, {})
     _FOLDERS.append(folder)
     return read_run(folder.name)
 
 
 _FOLDERS: list[TemporaryDirectory] = []
-
-
-@cache
-def drawn(name: str) -> dict:
-    return drawings_of(run_of(name))
-
-
-def panel_of(name: str, figure: str):
-    return drawn(name)[figure].figure.axes[0]
-
-
-def mesh_of(panel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Edges in x (nx + 1,) and y (ny + 1,) of the coloured cells, and their values (nx, ny), NaN if blank."""
-    (mesh,) = (each for each in panel.collections if isinstance(each, QuadMesh))
-    corners = mesh.get_coordinates()
-    return corners[0, :, 0], corners[:, 0, 1], np.ma.filled(mesh.get_array().astype(float), np.nan).T
-
-
-def centres(edges: np.ndarray) -> np.ndarray:
-    return 0.5 * (edges[1:] + edges[:-1])
-
-
-def words_of(panel) -> str:
-    return " ".join([*(text.get_text() for text in panel.texts), panel.get_title(loc="right")])
-
-
-def numbers(words: str, before: str) -> float:
-    """The number after a word."""
-    return float(re.search(before + r"\D*?(-?[\d.]+)", words)[1])
-
-
-def cross_of(panel) -> tuple[float, float]:
-    """Where the largest value is marked."""
-    (line,) = (each for each in panel.lines if each.get_marker() == "x")
-    return float(line.get_xdata()[0]), float(line.get_ydata()[0])
 
 
 def test_the_history_distinguishes_loading_and_unloading_and_has_hertz():
@@ -119,30 +68,33 @@ def test_the_history_distinguishes_loading_and_unloading_and_has_hertz():
     assert {line.get_linestyle() for line in history(once).figure.axes[0].lines[1:]} == {"None"}
 
 
-ALL = ["ellipse", "cut off", "travelling", "worn"]
-
-
-class TestPressure:
-    @pytest.mark.parametrize("name", ALL)
-    def test_only_the_contact_is_coloured_and_its_largest_value_is_written(self, name):
-        panel, run = panel_of(name, "pressure"), run_of(name)
-        x, y, field = mesh_of(panel)
-        touching = np.isfinite(field)
-        assert 0 < touching.sum() < field.size and np.nanmin(field) > 0.0
-        assert touching.sum() == run.summary["discretisation"]["contact_cells"]
-        quoted = 1e-9 * run.quantities["p_max_Pa"]
-        assert numbers(words_of(panel), "max") == pytest.approx(quoted, rel=6e-4)
-        u, v = cross_of(panel)
-        i, j = np.searchsorted(x, u) - 1, np.searchsorted(y, v) - 1
-        assert field[i, j] == pytest.approx(quoted, rel=1e-12)
-        assert "mu" in panel.get_xlabel() and "mu" in panel.get_ylabel()
-        if name == "travelling":
-            weight, end = np.nan_to_num(field), np.array(run.scene.loading.path.end)
-            middle = np.array([weight.sum(1) @ centres(x), weight.sum(0) @ centres(y)]) / weight.sum()
-            assert middle == pytest.approx(1e6 * end, abs=0.05)
-        if name == "cut off":  # cells at the edge of the patch bear more, and do not count
-            assert np.nanmax(field) > 1.2 * quoted and "frame" in words_of(panel)
-            (frame,) = panel.patches
-            assert frame.get_x() < u < frame.get_x() + frame.get_width() < x[-1]
-        else:
-            assert np.nanmax(field) == pytest.approx(quoted, rel=1e-12) and not panel.patches
+@pytest.mark.parametrize("name", ["ellipse", "cut off", "travelling", "worn"])
+def test_only_the_contact_is_coloured_and_its_largest_value_is_written(name):
+    run = run_of(name)
+    panel = drawings_of(run)["pressure"].figure.axes[0]
+    (mesh,) = (each for each in panel.collections if isinstance(each, QuadMesh))
+    corners, field = mesh.get_coordinates(), np.ma.filled(mesh.get_array().astype(float), np.nan).T
+    x, y, touching = corners[0, :, 0], corners[:, 0, 1], np.isfinite(field)
+    assert 0 < touching.sum() < field.size and np.nanmin(field) > 0.0
+    assert touching.sum() == run.summary["discretisation"]["contact_cells"]
+    quoted = 1e-9 * run.quantities["p_max_Pa"]
+    words = " ".join([*(text.get_text() for text in panel.texts), panel.get_title(loc="right")])
+    assert float(re.search(r"max\D*?(-?[\d.]+)", words)[1]) == pytest.approx(quoted, rel=6e-4)
+    (cross,) = (each for each in panel.lines if each.get_marker() == "x")
+    (u, v) = cross.get_xydata()[0]
+    i, j = np.searchsorted(x, u) - 1, np.searchsorted(y, v) - 1
+    assert field[i, j] == pytest.approx(quoted, rel=1e-12)
+    assert "mu" in panel.get_xlabel() and "mu" in panel.get_ylabel()
+    if name == "travelling":
+        weight, end = np.nan_to_num(field), np.array(run.scene.loading.path.end)
+        centres = ((edges[1:] + edges[:-1]) / 2 for edges in (x, y))
+        middle = [
+            sums @ at / weight.sum() for sums, at in zip((weight.sum(1), weight.sum(0)), centres, strict=True)
+        ]
+        assert middle == pytest.approx(1e6 * end, abs=0.05)
+    if name == "cut off":  # cells at the edge of the patch bear more, and do not count
+        assert np.nanmax(field) > 1.2 * quoted and "frame" in words
+        (frame,) = panel.patches
+        assert frame.get_x() < u < frame.get_x() + frame.get_width() < x[-1]
+    else:
+        assert np.nanmax(field) == pytest.approx(quoted, rel=1e-12) and not panel.patches

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from made_histories import CYCLES, FORCE, as_the_paper_says, history, result_of
 from made_results import Made, context, red as red_rows
-from made_studies import verdicts
+from made_studies import SCENES, verdicts
 
 from sam.scene import Status, load_scene
 from verification.cases.running_in import running_in, study
@@ -35,7 +35,6 @@ from verification.cases.running_in.study import (
 )
 from verification.compare.running_in_measures import History, Limits, Scar, Spread
 
-SCENES = {case: load_scene(f"verification/scenes/running-in-{case}.toml") for case in (*NAMES, "curve-c")}
 SMALL = reduced(SCENES[B], Effort(3, 2, 8))
 (CASE,) = running_in.CASES
 TEN = tuple(range(1, 11))
@@ -85,10 +84,8 @@ def made(order: str = "C", **changes) -> Run:
     """Three cycles, the friction and the protected area of the last as its surface has them."""
     cycle = np.arange(1.0, 4.0)
     volume, friction, protected = [9.5e-20, 9.5e-20, 1.9e-19], [0.3, 0.28, 0.25], [0.4, 0.45, 0.5]
-    own = History(
-        cycle, np.array(volume), np.array(friction), 0 * cycle, np.array(protected), 0 * cycle + 1e9
-    )
-    result = result_of(own, order)
+    columns = cycle, volume, friction, 0 * cycle, protected, 0 * cycle + 1e9
+    result = result_of(History(*map(np.array, columns)), order)
     result.tables["cycles"]["new_strain_max"] = np.array([0.01, 0.002, 0.0])
     for name, change in changes.items():
         table = next(table for table in result.tables.values() if name in table)
@@ -104,9 +101,8 @@ def red(*runs) -> set[str]:
 class TestRows:
     def test_surface_is_read_whichever_coordinate_runs_first(self):
         one, other = made().scar, made("F").scar
-        assert all(
-            np.array_equal(values, getattr(other, k), equal_nan=True) for k, values in vars(one).items()
-        )
+        for name, values in vars(one).items():
+            np.testing.assert_array_equal(values, getattr(other, name))
         assert one.height[1, 0] == 8e-8 and one.height[0, 1] == 1e-8
 
     def test_sums_of_the_made_surface(self):

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from made_histories import as_the_paper_says, at_rest, result_of
-from made_results import Made, context, of_frame, red
+from made_results import Made, context, of_frame, of_plane, red
 from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics
 
 from fem_reference.spatial import WornCycle
@@ -119,15 +119,18 @@ def _close(tree):
     return pytest.approx(tree, rel=1e-12) if isinstance(tree, float) else tree
 
 
+@pytest.mark.parametrize(
+    ("name", "count"), [("running-in-physics", len(ALL) * len(NAMES)), ("running-in-readings", None)]
+)
+def test_every_run_is_another_scene_surface_by_surface(name, count, tmp_path):
+    labels, scenes = zip(*all_cases()[name].scenes(context(name, tmp_path)).values(), strict=True)
+    assert len({repr(resolved(each)) for each in scenes}) == len(set(labels)) == (count or len(scenes))
+    seeds = [each.surface.seed for each in scenes]
+    assert seeds == sorted(seeds) and (count is None or set(seeds) == {2})
+
+
 class TestPhysics:
     CASE = all_cases()["running-in-physics"]
-
-    def test_every_physics_is_another_scene(self, tmp_path):
-        here = context(self.CASE.name, tmp_path)
-        labels, scenes = zip(*self.CASE.scenes(here).values(), strict=True)
-        every = {repr(resolved(each)) for each in scenes}
-        assert len(every) == len(set(labels)) == len(ALL) * len(NAMES) == 120
-        assert {scene.surface.seed for scene in scenes} == {2}
 
     def test_lost_and_missing_runs_and_a_first_cycle_of_its_own_turn_rows_red(self):
         readable(self.CASE, over_physics())
@@ -169,11 +172,6 @@ class TestReadings:
             runs[label, material, 2] = Run(scene, made, kept=study.Kept(made, "", ""))
         return framed(runs, PARTS, self.CASE.numbers).assign(coarse=False)
 
-    def test_every_reading_is_another_scene(self, tmp_path):
-        labels, scenes = zip(*self.CASE.scenes(context(self.CASE.name, tmp_path)).values(), strict=True)
-        assert len({repr(resolved(each)) for each in scenes}) == len(set(labels)) == len(scenes)
-        assert [each.surface.seed for each in scenes] == sorted(each.surface.seed for each in scenes)
-
     def test_statements_hold_where_the_runs_are_as_the_paper_says(self):
         """All but that the largest pressure of hardening falls, which made runs do not tell."""
         name = words.CHANGES[0][0]
@@ -186,9 +184,8 @@ class TestReadings:
         assert tables[0].rows[0][:4] == ("A roof that falls", "model", "10", "19")
         assert len(tables[0].rows) == len(words.CHANGES)
         assert "10 to 19 of 20 statements hold" in next(iter(self.CASE.notes(found)))
-        assert words.near(words.SAID[0], {"values": (0.82,)}) and not words.near(
-            words.SAID[0], {"values": (0.8,)}
-        )
+        near = [words.near(words.SAID[0], {"values": (value,)}) for value in (0.82, 0.8)]
+        assert near == [True, False]
 
     def test_wear_that_does_not_balance_and_a_loop_beyond_its_tolerance_turn_rows_red(self):
         name = words.named(words.PRINTED, "roof stays", "fills")
@@ -197,29 +194,36 @@ class TestReadings:
 
 
 class TestCampaign:
-    @pytest.fixture(autouse=True)
-    def anew(self):
-        """Campaigns are read once in a process."""
-        campaigns.cache_clear()
-        yield
+    @pytest.fixture
+    def made(self, tmp_path, monkeypatch):
+        """A case, its context at the full level, and the labels that it solves. Of a label: its history."""
+
+        def of(name, history=lambda label: as_the_paper_says()[A]):
+            own, solved = context(name, tmp_path, level="full"), []
+
+            def solve(model, scene, label, *, demand):
+                solved.append(label)
+                own.sources[label] = Reuse(True, "2026-01-02T03:04", "abcdefgh")
+                return result_of(history(label))
+
+            monkeypatch.setattr(own, "solve", solve)
+            return replace(all_cases()[name]), own, solved
+
+        campaigns.cache_clear()  # they are read once in a process
+        yield of
         campaigns.cache_clear()
 
     def test_runs_are_taken_from_it_and_some_are_solved_again_and_held_against_it(
-        self, tmp_path, monkeypatch
+        self, made, tmp_path, monkeypatch
     ):
-        case, friction = replace(all_cases()["running-in-readings"]), as_the_paper_says()[A].friction
-        own, solved, off = context(case.name, tmp_path, level="full"), [], [0.0]
+        said, off = as_the_paper_says()[A], [0.0]
+        case, own, solved = made(
+            "running-in-readings", lambda _: replace(said, friction=said.friction + off[0])
+        )
         one = next(iter(case.scenes(own)))[0]
         wanted = {key: each for key, each in case.scenes(own).items() if key[0] == one and key[2] < 3}
         monkeypatch.setattr(type(case), "scenes", lambda *_: wanted)
         monkeypatch.setattr(study, "FOLDER", tmp_path)
-
-        def solve(model, scene, label, *, demand):
-            solved.append(label)
-            own.sources[label] = Reuse(True, "2026-01-02T03:04", "abcdefgh")
-            return result_of(replace(as_the_paper_says()[A], friction=friction + off[0]))
-
-        monkeypatch.setattr(own, "solve", solve)
         before = case.runs(own)
         assert len(solved) == len(before) == 12 and np.isnan(apart_from_campaign(framed(before, PARTS)))
         case.keep(own, tmp_path / f"{case.name}.csv.gz")
@@ -241,17 +245,14 @@ class TestCampaign:
         assert study.solved_of(after).index.tolist() == [list(wanted).index((one, A, 2))]
 
     @pytest.mark.parametrize(("name", "again"), [("running-in-physics", 24), ("running-in-sensitivity", 5)])
-    def test_a_study_of_a_campaign_has_all_rows_tables_and_notes(self, name, again, tmp_path, monkeypatch):
-        case, solved = all_cases()[name], []
-        own = context(name, tmp_path, level="full")
+    def test_a_study_of_a_campaign_has_all_rows_tables_and_notes(
+        self, name, again, made, tmp_path, monkeypatch
+    ):
+        said = as_the_paper_says()
+        case, own, solved = made(
+            name, lambda label: said[next(each for each in NAMES if f"{each}-seed" in label)]
+        )
         monkeypatch.setattr(study, "FOLDER", tmp_path)
-
-        def solve(model, scene, label, *, demand):
-            solved.append(label)
-            own.sources[label] = Reuse(False, "2026-01-02T03:04", "abcdefgh")
-            return result_of(as_the_paper_says()[next(each for each in NAMES if f"{each}-seed" in label)])
-
-        monkeypatch.setattr(own, "solve", solve)
         case.keep(own, tmp_path / f"{name}.csv.gz")
         every = len(solved)
         campaigns.cache_clear()
@@ -261,18 +262,10 @@ class TestCampaign:
         assert readable(case, found)
         assert f"{every - again} of {every} runs" in next(iter(case.notes(found)))
 
-    def test_what_another_study_has_is_taken_from_there_and_not_kept_again(self, tmp_path, monkeypatch):
+    def test_what_another_study_has_is_taken_from_there_and_not_kept_again(self, made, tmp_path):
         """running-in solves what its own campaign is to have: the printed reading is that of the readings."""
-        case, solved = all_cases()["running-in"], []
-        own = context(case.name, tmp_path, level="full")
+        case, own, solved = made("running-in")
         printed = len(case.readings(own)[PRINTED_READING].effort.seeds) * len(NAMES)
-
-        def solve(model, scene, label, *, demand):
-            solved.append(label)
-            own.sources[label] = Reuse(False, "2026-01-02T03:04", "abcdefgh")
-            return result_of(as_the_paper_says()[A])
-
-        monkeypatch.setattr(own, "solve", solve)
         case.keep(own, tmp_path / "kept.csv.gz")
         assert len(solved) == len(case.scenes(own)) - printed and all("renewed" in each for each in solved)
         assert gzip.decompress((tmp_path / "kept.csv.gz").read_bytes()).startswith(b"# %d runs" % len(solved))
@@ -397,38 +390,32 @@ class TestFem:
         assert wrong(self.NAME, [{**row, "wears": 0.0} for row in rows]) == {"wears"}
         coarsest = fem.CELLS[0]
         worse = [{**row, "strain": row["strain"] * (10 if row["cells"] > coarsest else 1)} for row in rows]
-        assert wrong(self.NAME, worse) == {
-            f"{a}{b}-strain" for a in ("", "shrinks-") for b in ("own", "given")
-        }
+        rows = {f"{a}{b}-strain" for a in ("", "shrinks-") for b in ("own", "given")}
+        assert wrong(self.NAME, worse) == rows
 
     def test_models_are_compared_where_they_press_strain_and_wear(self, monkeypatch, tmp_path):
-        """FEM presses twice as much on the middle spot, strains by a tenth more and wears a fifth less; it is
-        given what SAM removes in each cycle.
-        """
+        """FEM presses twice on the middle spot, strains a tenth more and wears a fifth less than SAM."""
         asked = []
 
         def solve(model, scene, label):
             cells = int(label.split("-")[1])
             states = [*(f"cycle-{k}" for k in range(1, fem.CYCLES)), "unloaded"]
-            return Made(
-                tables=tables(cells), grids={s: heights(cells, k) for k, s in enumerate(states, start=1)}
-            )
+            grids = {s: heights(cells, k) for k, s in enumerate(states, start=1)}
+            return Made(tables=tables(cells), grids=grids)
 
         def worn_cycles(scene, *ways):
             asked.extend(ways)
             cells = fem.CELLS[len(asked) // 2 - 1]
             worn = [heights(cells, k + 1)["surface"].cell_data["worn_m"][..., 0] for k in range(fem.CYCLES)]
-            return [
-                [WornCycle(tables(cells, 2.0, 1.1), 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]
-            ] * len(ways)
+            own = tables(cells, 2.0, 1.1)
+            return [[WornCycle(own, 0.02, 0.8 * each, 2e-9 + 0.2 * each) for each in worn]] * len(ways)
 
         here = context(self.NAME, tmp_path)
         monkeypatch.setattr(here, "solve", solve)
         monkeypatch.setattr(fem, "worn_cycles", worn_cycles)
         rows = list(fem.compared(here))
-        assert asked[0] is None and np.sum(asked[1], axis=0).max() == pytest.approx(
-            fem.CYCLES * fem.THICK, rel=1e-12
-        )
+        assert asked[0] is None
+        assert np.sum(asked[1], axis=0).max() == pytest.approx(fem.CYCLES * fem.THICK, rel=1e-12)
         assert len(rows) == 8 and rows[-1]["wears"] == pytest.approx(fem.THICK)
         assert rows[-1]["pressure"] == pytest.approx(3.0 / np.sqrt(16 + 36 + 4))
         assert rows[-1]["residual"] < 1e-12
@@ -458,9 +445,8 @@ def tables(cells: int, pressure: float = 1.0, strain: float = 1.0) -> dict:
     p, z = np.zeros((cells, cells)), np.linspace(0.1e-6, 3e-6, 24)
     for k, value in enumerate((4e9, 3e9, 2e9)):
         p[(3 + 7 * k) : (6 + 7 * k), cells // 2 - 1 : cells // 2 + 1] = value * (pressure if k == 1 else 1.0)
-    peeq = np.full((cells, 1), 0.01 * strain) * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))
-    (xx, yy), (px, pz) = np.meshgrid(x, x, indexing="ij"), np.meshgrid(x, z, indexing="ij")
+    xx, yy = np.meshgrid(x, x, indexing="ij")
     return {
         "surface": {"x_m": xx.ravel(), "y_m": yy.ravel(), "p_Pa": p.ravel(), "state": ["peak"] * xx.size},
-        "plane": {"x_m": px.ravel(), "z_m": pz.ravel(), "peeq": peeq.ravel(), "state": ["peak"] * px.size},
+        "plane": of_plane(x, z, "peeq", lambda _, z: 0.01 * strain * np.exp(-(((z - 0.6e-6) / 0.5e-6) ** 2))),
     }

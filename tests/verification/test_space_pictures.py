@@ -9,10 +9,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from builders import running_in
+from builders import LINEAR, running_in, scene
 from PIL import Image
 
-from sam.scene import Scene
 from samfem.cli import PICTURES as NAMES
 from verification.figures.space import CannotDrawError, draw, offscreen
 from verification.figures.space.meshes import Found
@@ -20,26 +19,14 @@ from verification.figures.space.pictures import PICTURES, Picture
 from verification.runs import models
 from verification.runs.files import read_run, write_run
 
-ELASTIC = {"young": 210e9, "poisson": 0.3}
-SOFT = ELASTIC | {"plasticity": {"law": "linear", "yield_stress": 1e9, "modulus": 1e10}}
-SPHERE = {"shape": "sphere", "radius": 105e-6}
 UNLOADED = {"force": 0.05, "steps": 1, "unload": True, "unload_steps": 1}
+WAVE = {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6}
+SQUARE = {"cells": (16, 16), "extent": (8e-6, 8e-6)}
 SCENES = {
-    "elastic": {"body": ELASTIC, "counterbody": SPHERE, "loading": {"force": 0.05}},
-    "yielding": {"body": SOFT, "counterbody": SPHERE, "loading": UNLOADED},
-    "unloaded": {"body": ELASTIC, "counterbody": SPHERE, "loading": {"force": 0.0}},
-    "rough": {
-        "body": ELASTIC,
-        "counterbody": {"shape": "flat"},
-        "surface": {"kind": "sinusoid", "amplitude": 0.05e-6, "wavelength_x": 8e-6, "wavelength_y": 8e-6},
-        "loading": {"force": 0.02},
-    },
-}
-GRIDS = {
-    "unloaded": {"grid": {"cells": (17, 17), "extent": (8e-6, 8e-6)}},
-    "elastic": {"grid": {"cells": (17, 17)}},
-    "yielding": {"grid": {"cells": (33, 33)}},
-    "rough": {"grid": {"cells": (16, 16), "extent": (8e-6, 8e-6)}},
+    "elastic": {"loading": {"force": 0.05}, "grid": {"cells": (17, 17)}},
+    "yielding": {"body": {"plasticity": LINEAR}, "loading": UNLOADED, "grid": {"cells": (33, 33)}},
+    "unloaded": {"loading": {"force": 0.0}, "grid": SQUARE},
+    "rough": {"counterbody": {"shape": "flat"}, "surface": WAVE, "loading": {"force": 0.02}, "grid": SQUARE},
 }
 COARSE = {models.FEM: {"cells_per_radius": 8, "box": 5}, models.FEM_3D: {"cells_per_radius": 4, "box": 4}}
 _FOLDERS: list[TemporaryDirectory] = []
@@ -48,10 +35,9 @@ _FOLDERS: list[TemporaryDirectory] = []
 @cache
 def found(name: str, model: str = models.SAM) -> Found:
     """A solved scene, read back from files that stay until the tests end."""
-    parts = GRIDS.get(name, {}) if model == models.SAM else {"fem": COARSE[model]}
-    scene = running_in() if name == "worn" else Scene(**SCENES[name] | parts)
+    given = running_in() if name == "worn" else scene(**SCENES[name], fem=COARSE.get(model))
     _FOLDERS.append(TemporaryDirectory())
-    write_run(models.solve(scene, model), scene, _FOLDERS[-1].name, {})
+    write_run(models.solve(given, model), given, _FOLDERS[-1].name, {})
     return Found(read_run(_FOLDERS[-1].name))
 
 
@@ -168,12 +154,8 @@ def can_draw():
     """Skips where VTK cannot draw a triangle, in a process of its own."""
     window = offscreen.window()
     program = "import pyvista; pyvista.Plotter(off_screen=True).screenshot(return_img=True)"
-    if (
-        window is None
-        or subprocess.run(
-            [sys.executable, "-c", program], env={offscreen.WINDOW: window}, capture_output=True, check=False
-        ).returncode
-    ):
+    how = {"env": {offscreen.WINDOW: window}, "capture_output": True, "check": False}
+    if window is None or subprocess.run([sys.executable, "-c", program], **how).returncode:
         pytest.skip(f"nothing is drawn in space: {offscreen.REMEDY}")
 
 

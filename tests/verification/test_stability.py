@@ -16,26 +16,13 @@ from sam.scene import Status
 from verification.cases.robustness.stability import judged
 from verification.reference.hertz import CircularContact
 from verification.robustness.matrix.checks import Bench, Trial, check_of
-from verification.robustness.matrix.rows import (
-    RIGHT,
-    WRONG,
-    Cell,
-    all_rows,
-    judge,
-    table,
-    topics,
-)
+from verification.robustness.matrix.rows import RIGHT, WRONG, Cell, all_rows, judge, table, topics
 from verification.robustness.matrix.scenes import SIDE, scene_with
 from verification.runs import models
 from verification.runs.models import FEM, SAM
 
 ROWS = {row.name: row for row in all_rows("full")}
 EVERY = tuple(ROWS.values())
-
-
-def red_of(rows, found) -> set[str]:
-    frame = pd.DataFrame([*judged(rows, found), {"sweep": "Topics", "topics-missing": 0}])
-    return red("stability", of_frame("stability", frame), whole=True)
 
 
 def test_rows_are_complete():
@@ -86,15 +73,14 @@ def overflow(result):
     ],
 )
 def test_what_is_not_as_expected_is_wrong_and_turns_the_matrix_red(monkeypatch, name, model, change, said):
-    """A wrong answer, an answer in place of an error, an error without advice or of another kind, an error in
-    place of an answer, another exception, a warning.
-    """
+    """Wrong answers and errors, either in place of the other, other exceptions, a warning."""
     solve, row = models.solve, ROWS[name]
     monkeypatch.setattr(models, "solve", lambda scene, model: change(solve(scene, model)))
     cell = judge(row, model, Bench())
     assert cell.kind == WRONG and said in cell.text
     rest = {other: Cell(RIGHT) for other in row.expected}
-    assert "wrong" in red_of([row], {name: rest | {model: cell}})
+    rows = [*judged([row], {name: rest | {model: cell}}), {"sweep": "Topics", "topics-missing": 0}]
+    assert "wrong" in red("stability", of_frame("stability", pd.DataFrame(rows)), whole=True)
 
 
 # --- checks, of made results ---
@@ -109,9 +95,8 @@ BY_APPROACH = scene(loading={"force": None, "approach": 1e-6})
 
 
 def cycles(*signs):
-    return {
-        "tables": {"cycles": {"cycle": [1, 2], "friction_coefficient": [0.3, 0.3], "friction_sign": signs}}
-    }
+    table = {"cycle": [1, 2], "friction_coefficient": [0.3, 0.3], "friction_sign": signs}
+    return {"tables": {"cycles": table}}
 
 
 def uncertain(**entries):
@@ -165,6 +150,5 @@ def worst(said, given, result, twin=None):
 
 @pytest.mark.parametrize(("said", "given", "right", "wrong"), MADE)
 def test_a_check_tells_right_from_wrong(said, given, right, wrong):
-    assert (
-        worst(said, given, {"quantities": {}} | right) <= 1 < worst(said, given, {"quantities": {}} | wrong)
-    )
+    of_right, of_wrong = (worst(said, given, {"quantities": {}} | result) for result in (right, wrong))
+    assert of_right <= 1 < of_wrong

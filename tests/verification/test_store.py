@@ -42,11 +42,11 @@ def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(
     assert found.result.status is Status.CONVERGED and found.created
     for name, result in (("own", coarse_results[model]), ("stored", found.result)):
         write_run(result, COARSE, tmp_path / name, {})
-    files = sorted(entry.name for entry in (tmp_path / "own").iterdir())
-    assert len(files) >= 6
-    assert all(
-        (tmp_path / "own" / name).read_bytes() == (tmp_path / "stored" / name).read_bytes() for name in files
+    own, stored = (
+        {entry.name: entry.read_bytes() for entry in (tmp_path / name).iterdir()}
+        for name in ("own", "stored")
     )
+    assert len(own) >= 6 and own == stored
 
 
 # what it is found by
@@ -59,11 +59,8 @@ def test_the_title_is_no_part_of_the_key_and_everything_else_is(kept):
     assert identity(COARSE, models.SAM) != identity(COARSE, models.FEM)
 
 
-KINEMATIC = Scene(
-    body=STEEL | {"plasticity": PERFECT | {"kinematic": {"modulus": (1e10,)}}},
-    counterbody=SPHERE,
-    loading={"force": 1.0},
-)
+PRAGER = {"plasticity": PERFECT | {"kinematic": {"modulus": (1e10,)}}}
+KINEMATIC = Scene(body=STEEL | PRAGER, counterbody=SPHERE, loading={"force": 1.0})
 IDENTITIES = {
     "running-in-renewed": "4e3c476a4c31",
     "coated-sliding": "85e03c37e064",
@@ -78,14 +75,10 @@ unwritten. Only a change of their own files, or of a default, may change one; of
 """
 
 
-def scene_of(name):
-    return load_scene(ROOT / "verification" / "scenes" / f"{name}.toml") if isinstance(name, str) else name
-
-
 @pytest.mark.parametrize("name", IDENTITIES)
 def test_a_key_at_its_default_changes_no_identity_and_no_byte(name):
     """Neither one that is new nor one that is written out, in the store, in checkpoints, in summary.json."""
-    scene = scene_of(name)
+    scene = load_scene(ROOT / f"verification/scenes/{name}.toml") if isinstance(name, str) else name
     assert store._key(identity(scene, models.SAM))[:12] == IDENTITIES[name]
     written = Scene(**_whole(scene))
     assert written == scene and written.model_fields_set == set(Scene.model_fields)
@@ -137,12 +130,11 @@ def test_a_result_is_solved_once_and_fresh_on_request(tmp_path, counted):
 
 
 def test_a_result_is_not_kept_if_the_code_changed_meanwhile(tmp_path, coarse_results, monkeypatch, capsys):
-    Store(tmp_path).keep(
-        COARSE, models.SAM, replace(coarse_results[models.SAM], status=Status.UNDER_RESOLVED)
-    )
+    result = coarse_results[models.SAM]
+    Store(tmp_path).keep(COARSE, models.SAM, replace(result, status=Status.UNDER_RESOLVED))
     assert Store(tmp_path).entries() == []  # neither what did not converge
     monkeypatch.setattr(store, "unchanged", lambda model: False)
-    Store(tmp_path).keep(COARSE, models.SAM, coarse_results[models.SAM])
+    Store(tmp_path).keep(COARSE, models.SAM, result)
     assert Store(tmp_path).entries() == [] and "changed since the command began" in capsys.readouterr().err
 
 
@@ -263,9 +255,8 @@ def _keep_and_die(folder: Path, result) -> None:
 
 
 def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, coarse_results):
-    process = multiprocessing.get_context("fork").Process(
-        target=_keep_and_die, args=(tmp_path, coarse_results[models.SAM])
-    )
+    how = {"target": _keep_and_die, "args": (tmp_path, coarse_results[models.SAM])}
+    process = multiprocessing.get_context("fork").Process(**how)
     process.start()
     process.join(20)
     assert process.exitcode == -signal.SIGKILL

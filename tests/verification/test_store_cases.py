@@ -4,15 +4,12 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from builders import scene_text
 from fake_case import FakeCase, row
-from stored import BOTH, COARSE, COARSE_KEYS, flipped
-from test_report import sketch
+from stored import BOTH, COARSE_KEYS, flipped
+from test_report import solved
 
-from verification.cases.case import Outcome, Plot
-from verification.judging import Measured
 from verification.runs import models, store
 from verification.runs.store import FOLDER, Store
 from verification.suite import outcomes, verify
@@ -85,17 +82,12 @@ def test_store_says_when_there_is_none(monkeypatch, samfem):
 class Small:
     """A case that solves the coarse scene with SAM, draws, and counts its runs."""
 
-    runs, problem = 0, ""
+    runs = 0
 
     def __call__(self, context):
         self.runs += 1
         context.scene("starts/sliding")
-        result = context.solve(models.SAM, COARSE, "sam")
-        if self.problem:
-            raise RuntimeError(self.problem)
-        p = result.quantities["p_max_Pa"]
-        outcome = Outcome({"small.one": Measured(np.float64(p * 1.01), p)})
-        outcome.figures = [context.save(Plot(sketch(), "curve", "A curve", "Caption"))]
+        outcome = solved(context, "small.one")
         outcome.setup = [("Force", "1 N")]
         return outcome
 
@@ -103,9 +95,8 @@ class Small:
 @pytest.fixture
 def small(monkeypatch, counted):
     case = Small()
-    monkeypatch.setattr(
-        verify, "all_cases", lambda: {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
-    )
+    cases = {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
+    monkeypatch.setattr(verify, "all_cases", lambda: cases)
     monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
     return case
 

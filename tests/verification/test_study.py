@@ -36,9 +36,8 @@ def column(content, key: str) -> list:
 
 
 def test_a_grid_is_every_combination_and_the_last_key_changes_fastest(folder):
-    content = study(
-        folder, '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { list = [1, 2, 3] }'
-    )
+    vary = '"loading.force" = { list = ["1 N", "2 N"] }\n"loading.steps" = { list = [1, 2, 3] }'
+    content = study(folder, vary)
     assert [point.shown for point in content.points] == [[f, n] for f in (1.0, 2.0) for n in (1, 2, 3)]
     assert [point.index for point in content.points] == list(range(6))
     for point in content.points:

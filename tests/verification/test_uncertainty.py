@@ -149,10 +149,8 @@ def test_cells_and_steps_are_added_up():
     assert entry["u_steps"] == pytest.approx(2 * 0.2 / 9 * values[0] / values[2], rel=1e-9)
     assert entry["u_num"] == entry["u_cells"] + entry["u_steps"] and entry["values"] == values
     assert entry["order_seen"] == pytest.approx(2.0) and entry["flag"] == "" and "force_N" not in found
-    assert found["mises_max_depth_m"] == {
-        "u_num": None,
-        "flag": "the place of a maximum moves by whole points",
-    }
+    moves = "the place of a maximum moves by whole points"
+    assert found["mises_max_depth_m"] == {"u_num": None, "flag": moves}
 
     def outlined(each, _):
         area = {"contact_area_m2": np.pi * 1e-8 * (1 + 400 / each.grid.cells[0] ** 2)}
@@ -168,32 +166,26 @@ def test_cells_and_steps_are_added_up():
 def test_values_that_agree_by_chance_leave_what_the_edge_of_the_contact_does():
     """0.1 of the value, of the area 0.3, over the square of the cells in the radius."""
     scene = Scene(**ELASTIC | {"grid": {"cells": (65, 65), "extent": (4e-4, 4e-4)}})
-    area = {"contact_area_m2": np.pi * 1e-8}
     result = made(scene)
-    touching = Result(**vars(result) | {"quantities": result.quantities | area})
+    touching = replace(result, quantities=result.quantities | {"contact_area_m2": np.pi * 1e-8})
     found = entries(scene, lambda *_: touching)
     exact = 0.1 * result.quantities["peeq_max"] / 16.25**2
     assert found["peeq_max"]["u_cells"] == found["peeq_max"]["u_num"] == pytest.approx(exact, rel=1e-12)
     assert found["contact_area_m2"]["u_cells"] == pytest.approx(0.3 * np.pi * 1e-8 / 16.25**2, rel=1e-12)
-    nodal = solve(scene, FEM, lambda *_: Result(**vars(touching) | {"model": FEM})).uncertainty
+    nodal = solve(scene, FEM, lambda *_: replace(touching, model=FEM)).uncertainty
     assert nodal["peeq_max"]["u_cells"] == 0.0
 
 
 def test_the_edge_of_a_contact_inside_an_element_leaves_something_of_the_approach_alone():
     """Of a body that yields, 20 elements in the radius; that of an elastic one is at a node."""
     wet = {"contact_area_m2": np.pi * 1e-8, "approach_m": 2e-7, "peeq_max": 0.01}
-
-    def parts(tables) -> dict[str, float]:
-        scene = Scene(**tables | {"grid": None, "fem": {"cells_per_radius": 20}})
-        result = Result(FEM, Status.CONVERGED, wet, {}, cost={"solve_s": 1.0})
-        return {
-            name: each.get("u_cells")
-            for name, each in solve(scene, FEM, lambda *_: result).uncertainty.items()
-        }
-
-    found = parts(YIELDING)
-    assert found["approach_m"] == pytest.approx(0.1 * 2e-7 / 20**2, rel=1e-12) and found["peeq_max"] == 0.0
-    assert parts(ELASTIC)["approach_m"] == 0.0
+    result = Result(FEM, Status.CONVERGED, wet, {}, cost={"solve_s": 1.0})
+    own = {"grid": None, "fem": {"cells_per_radius": 20}}
+    yielding, elastic = (
+        solve(Scene(**tables | own), FEM, lambda *_: result).uncertainty for tables in (YIELDING, ELASTIC)
+    )
+    assert yielding["approach_m"]["u_cells"] == pytest.approx(0.1 * 2e-7 / 20**2, rel=1e-12)
+    assert yielding["peeq_max"]["u_cells"] == 0.0 == elastic["approach_m"]["u_cells"]
 
 
 @pytest.mark.parametrize(
@@ -208,11 +200,7 @@ def test_solves_that_are_no_family_give_none(cells, spoilt, words):
     """Too coarse a grid, one that does not converge, halved load steps in one of the solves."""
     scene = Scene(**YIELDING | {"grid": {"cells": (cells, cells), "extent": (4e-4, 4e-4)}})
 
-    def solver(each: Scene, label: str) -> Result:
-        result = made(each)
-        return Result(**vars(result) | spoilt.get(label, {}))
-
-    found = entries(scene, solver)["peeq_max"]
+    found = entries(scene, lambda each, label: replace(made(each), **spoilt.get(label, {})))["peeq_max"]
     assert found["u_num"] is None and words in found["flag"]
 
 
@@ -265,14 +253,14 @@ def test_a_coarser_grid_that_the_model_refuses_gives_none():
 
 
 def test_of_a_rough_body_only_what_the_balance_of_forces_decides():
-    found = entries(Scene(**ROUGH), lambda each, _: rough(each))
+
+    def solver(each: Scene, _label: str) -> Result:
+        values = {"approach_m": 1 + 1 / each.grid.cells[0], "p_max_Pa": 1.0}
+        return replace(made(each), quantities=values)
+
+    found = entries(Scene(**ROUGH), solver)
     assert found["approach_m"]["u_num"] > 0.0 and found["approach_m"]["cells"] == [48, 32, 22]
     assert found["p_max_Pa"]["u_num"] is None and "single spot" in found["p_max_Pa"]["flag"]
-
-
-def rough(scene: Scene) -> Result:
-    values = {"approach_m": 1 + 1 / scene.grid.cells[0], "p_max_Pa": 1.0}
-    return Result(**vars(made(scene)) | {"quantities": values})
 
 
 FINER = ELASTIC | {"grid": {"cells": (39, 39)}}
@@ -312,12 +300,8 @@ def test_what_a_doubtful_reference_says_does_not_count():
 
 
 def test_medians_are_of_quantities_with_three_values():
-    of = {
-        "peeq_max": (2.0, 3.0, 9.0),
-        "p_max_Pa": (4.0, 5.0, 6.0),
-        "few": (1.0, 1.0),
-        study.AREA: (7.0, 8.0, 9.0),
-    }
+    of = {"peeq_max": (2.0, 3.0, 9.0), "p_max_Pa": (4.0, 5.0, 6.0), "few": (1.0, 1.0)}
+    of[study.AREA] = 7.0, 8.0, 9.0
     rows = pd.DataFrame([{"quantity": name, "x": each} for name, own in of.items() for each in own])
     assert study.smallest_median(rows, "x") == 3.0 and study.largest_median(rows, "x") == 5.0
 
