@@ -70,13 +70,16 @@ def test_other_code_another_scene_other_gates_and_a_case_that_broke_off_are_name
     assert said_of(samfem, report) == f"{CASE}: its gates have changed"
 
 
-def test_a_case_file_counts_but_for_its_rows():
-    case = all_cases()[CASE]
-    own = [
-        outcomes.file_digest(replace(case, file=case.file.model_copy(update=changed)))
-        for changed in ({}, {"claims": ()}, {"vary": {"resolution": [9, 9]}})
-    ]
-    assert own[0] == own[1] != own[2]
+def test_a_case_file_counts_but_for_limits():
+    file = all_cases()[CASE].file
+    first, *others = file.claims
+    wider = first._replace(row=first.row.model_copy(update={"tolerance": 1.0}))
+    changed = ({}, {"claims": (wider, *others)}, {"claims": (*others,)}, {"vary": {"resolution": [9, 9]}})
+    own, limit, row, resolution = (
+        outcomes.file_digest(replace(all_cases()[CASE], file=file.model_copy(update=each)))
+        for each in changed
+    )
+    assert own == limit and len({own, row, resolution}) == 3
 
 
 def test_a_report_of_all_that_is_asked_is_not_stale(report, samfem, monkeypatch):

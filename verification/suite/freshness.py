@@ -3,7 +3,7 @@
 earlier report stay in a new one, word for word and byte for byte: those that do not run again.
 
 results.json says of each case by which code it was made (`code`, a digest of the files that it depends on),
-by which case file (`file`, its digest but for the rows) and of which scenes (`inputs`, their SHA-256).
+by which case file (`file`, its digest but for limits) and of which scenes (`inputs`, their SHA-256).
 Documentation and what only words a page do not count.
 """
 

@@ -3,7 +3,7 @@
 
 A case whose code and scenes are unchanged need not run again: what it measured is judged anew, what
 it drew is written again byte for byte. Only a case that came to its end is kept. Its scenes and its
-file, but for the rows, count by content, everything else by the version of the code that it depends on.
+file, but for limits, count by content, everything else by the version of the code that it depends on.
 """
 
 import gzip
@@ -79,10 +79,12 @@ def _identity(case: Case, level: str) -> dict:
 
 
 def file_digest(case: Case | None) -> str:
-    """Digest of what the file of a case says beside its rows, empty without one."""
+    """Digest of what the file of a case says beside the limits and words of its rows, empty without one."""
     if case is None or case.file is None:
         return ""
-    return hashlib.sha256(case.file.model_dump_json(exclude={"path", "claims"}).encode()).hexdigest()
+    measured = [(claim.row.id, *claim[1:]) for claim in case.file.claims]
+    content = case.file.model_dump_json(exclude={"path", "claims"}) + repr(measured)
+    return hashlib.sha256(content.encode()).hexdigest()
 
 
 def present(name: str) -> bytes | None:
