@@ -31,10 +31,12 @@ def scene(law="swift", ratio=4.0, cells=8, steps=10, **keys):
     )
 
 
-@cache
-def loaded(law="swift", cells=8, steps=4) -> tuple[Model, list[Step]]:
-    model = build(plan(scene(law, cells=cells, steps=steps, unload=False)))
+def made(law="swift", ratio=4.0, cells=8, steps=10) -> tuple[Model, list[Step]]:
+    model = build(plan(scene(law, ratio, cells, steps, unload=False)))
     return model, run(model, model.plan.schedule)
+
+
+loaded = cache(made)
 
 
 @pytest.mark.parametrize("law", ["swift", "perfect"])
@@ -50,16 +52,18 @@ def test_elastic_below_yield(law):
 
 def test_a_depth_profile_acts_at_each_point():
     """Factor 1.3 down to 1 um: it is that of the depth, and there is less plastic strain than without."""
-    model, steps = loaded("profile")
+    model, steps = loaded("profile", steps=4)
     depth, factor = model.body.points[1] * model.scales.length, model.problem.material.factor
     assert factor == pytest.approx(np.interp(depth, [1e-6, 4e-6], [1.3, 1.0]))
-    plain = loaded("perfect")[1][-1].state
+    plain = loaded("perfect", steps=4)[1][-1].state
     assert steps[-1].state.history.peeq.max() < plain.history.peeq.max()
 
 
 @pytest.mark.parametrize("thickness", [0.28, 0.32])
 def test_the_mesh_has_a_line_where_the_yield_stress_has_a_kink(monkeypatch, thickness):
-    """Both ends of a weak layer lie in one row of elements 1/8 high; no parabola goes across the kink."""
+    """Both ends of a weak layer lie in one row of elements 1/8 high. The largest strain is that of points,
+    of no parabola through the kink there.
+    """
     a = np.pi * 4 * YIELD["swift"] * RADIUS / (2 * 210e9 / 0.91)
     layer = {"B": 9450e6, "profile": [[thickness * a, 0.1], [1.5 * thickness * a, 1.0]]}
     monkeypatch.setitem(LAWS, "swift", SWIFT | layer)
@@ -90,6 +94,14 @@ def test_reverse_yielding_is_found_and_unloaded_in_steps():
     stress = model.body.stress(model.problem.body(end.u, 0), end.history.plastic_strain)
     assert model.problem.material.excess(stress, end.history).max() < 1e-10
     assert max(step.state.residual for step in steps) < 1e-9
+
+
+def test_weak_steps_finish_by_cutting():
+    """Perfect plasticity in one load step: Newton fails, the step is halved, and the cuts are counted."""
+    result = fem_reference.solve(scene("perfect", steps=1))
+    assert result.status is Status.CONVERGED and result.cost["step_cuts"] >= 1
+    assert result.quantities["force_N"] == pytest.approx(hertz_force(4e9), rel=1e-9)
+    assert result.tables["history"]["iterations"][0] == result.cost["newton_iterations"] - 1
 
 
 def test_parts_of_a_cut_step_begin_with_the_nodes_of_the_last(monkeypatch):
@@ -138,6 +150,7 @@ def dented(fem, approach, steps):
 
 
 def test_steps_in_a_dent_do_not_touch():
+    """The first step of the second cycle ends above the dent of the first, without force, at its approach."""
     history = dented(COARSE, 0.3e-6, 5)
     at = {place: k for k, place in enumerate(zip(history["cycle"], history["step"], strict=True))}
     assert history["approach_m"][at[2, 1] - 1] > 0.06e-6  # unloaded

@@ -148,6 +148,19 @@ def test_a_patch_of_distorted_elements_carries_a_uniform_state_exactly():
     assert volume.sum() == pytest.approx(np.pi * 1.2**2 * 0.7 * (2.0**2 - 0.5**2), rel=1e-12)
 
 
+@pytest.mark.parametrize("law, force", [({}, 1e-3), ({"law": "perfect", "yield_stress": 1e-2}, 1e-4)])
+def test_the_tangent_of_the_contact_problem_is_the_derivative_of_its_forces(law, force):
+    """Body alone; the curvature of the sphere shows in Newton's method, see the next test."""
+    model = study.build(scene(force, 4, **law), "finite")
+    state = study.load_to(model, [0.5, 1.0])[0].state
+    rng = np.random.default_rng(1)
+    direction, h = rng.standard_normal(state.u.size), 1e-6
+    u = state.u + 0.01 * rng.standard_normal(state.u.size)
+    plus, minus = (model.problem.respond(u + sign * h * direction, state.history).force for sign in (1, -1))
+    exact = model.problem.respond(u, state.history).tangent @ direction
+    assert (plus - minus) / (2.0 * h) == pytest.approx(exact, abs=1e-6 * np.abs(exact).max())
+
+
 @pytest.mark.parametrize("kind", ["sphere", "finite"])
 def test_newtons_method_converges_quadratically(kind):
     """At a/R = 0.19, the last iterations with the same nodes in contact."""

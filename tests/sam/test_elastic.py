@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Smooth scenes through the semi-analytical solver: history and statuses, a given approach, two grids."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import PERFECT, RADIUS, SHAPES, scene
@@ -97,27 +99,48 @@ def test_beside_a_punch_there_is_no_gap():
 
 # a given approach
 
+CYCLES = {"force": 0.65, "steps": 3, "unload": True, "cycles": 2}
 WAVES = {"kind": "self-affine", "sq": 20e-9, "hurst": 0.8, "cutoff_long": 12e-6, "cutoff_short": 2e-6}
 COATING = {"thickness": 1e-6, "young": 80e9, "poisson": 0.3}
 KINDS = {
-    "punch": {"counterbody": SHAPES["punch"], "loading": {"unload": True, "cycles": 2}},
-    "sliding": {"friction": 0.3},
-    "coated": {"body": {"coating": COATING}},
-    "rough": {"surface": WAVES | {"seed": 1}, "loading": {"force": 0.1}},
+    "punch": {"counterbody": SHAPES["punch"], "loading": CYCLES},
+    "sliding": {"friction": 0.3, "loading": {"force": 0.65, "steps": 2}},
+    "coated": {"body": {"coating": COATING}, "loading": CYCLES | {"cycles": 1}},
+    "rough": {"surface": WAVES | {"seed": 1}, "loading": {"force": 0.1, "steps": 2}},
+    "plastic": {
+        "body": {"plasticity": PERFECT},
+        "loading": CYCLES | {"force": 0.2, "steps": 2},
+        "grid": COARSE | {"cells": (17, 17)},
+    },
 }
 
 
+def rows_of(result):
+    """(cycle, step) -> row of the history."""
+    history = result.tables["history"]
+    return {place: k for k, place in enumerate(zip(history["cycle"], history["step"], strict=True))}
+
+
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_approach_of_a_force_returns_it(kind):
-    """To ten times the tolerance of the solver; the rest of the record with it."""
-    given = scene(grid=COARSE, **KINDS[kind])
-    by_force = sam.solve(given)
-    approach = {"force": None, "approach": by_force.quantities["approach_m"]}
-    loading = KINDS[kind].get("loading", {}) | approach
-    by_approach = sam.solve(scene(grid=COARSE, **KINDS[kind] | {"loading": loading}))
+def test_the_approaches_of_a_force_run_return_its_forces(monkeypatch, kind):
+    """In every step, to ten times the tolerance of the solver; the rest of the record with them."""
+    a_scene = scene(**{"grid": COARSE} | KINDS[kind])
+    by_force, plan = sam.solve(a_scene), sam.plan(a_scene)
+    rows = rows_of(by_force)
+
+    def with_approach(target):
+        approach = float(by_force.tables["history"]["approach_m"][rows[target.cycle, target.step]])
+        given = replace(target, load=replace(target.load, force=np.nan, approach=approach))
+        return given if target.rises else target
+
+    targets = tuple(map(with_approach, plan.schedule.targets))
+    peak = next(target.load for target in reversed(targets) if target.rises)
+    schedule = replace(plan.schedule, targets=targets, peak=replace(peak, sign=1.0))
+    monkeypatch.setattr("sam.solver.plan_of", lambda _bodies: replace(plan, schedule=schedule))
+    by_approach = sam.solve(a_scene)
     assert by_force.status is by_approach.status is Status.CONVERGED
-    near = 10 * given.solver.tolerance
-    for name, scale in (("force_N", given.loading.force), ("approach_m", RADIUS)):
+    near = 10 * a_scene.solver.tolerance
+    for name, scale in (("force_N", a_scene.loading.force), ("approach_m", RADIUS)):
         forces, found = (np.array(each.tables["history"][name]) for each in (by_force, by_approach))
         assert found == pytest.approx(forces, rel=near, abs=near * scale)
     for name in ("p_max_Pa", "mises_max_change", "friction_coefficient"):

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from sam.contact.operators import surface_strain
+from sam.contact.operators import elastic_strain, surface_strain
 from sam.scene.body import Friction, growth_coefficient
 from sam.tribofilm import FilmLaw, FilmState
 from sam.tribofilm.law import Loads, printed_stress, radial_flow
@@ -18,6 +18,8 @@ from verification.reference.stress import deviator, von_mises
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3
+TABLES = {n: pd.read_csv(f"verification/data/table-{n}.csv") for n in (2, 3)}
+"""Of Bosman & Schipper (2011): chemical films of other studies, and how fast they grow."""
 
 
 def cells(*values):
@@ -185,7 +187,7 @@ class TestScene:
         """nm, to the digits given; between its rows the coefficient is linear."""
         growth = [1e9 * film_law.friction_of(bath).growth for bath in (50.0, 100.0, 150.0, 200.0)]
         assert growth == pytest.approx([1.3731, 2.04145, 2.5882, 2.7541], abs=5.1e-5)
-        for bath, coefficient in pd.read_csv("verification/data/table-3.csv").to_numpy():
+        for bath, coefficient in TABLES[3].to_numpy():
             exact, of_bath = coefficient * np.sqrt((314.15e-3 - 300e-6) / 1.0), film_law.friction_of(bath)
             assert 1e9 * of_bath.growth == pytest.approx(exact, rel=1e-12)
             assert 100.0 * of_bath.thinning_limit == pytest.approx(exact, rel=1e-12)
@@ -230,7 +232,18 @@ def test_printed_flow_of_one_component_ends_on_the_yield_surface(component):
     np.testing.assert_allclose(moved, flow, rtol=1e-10, atol=1e-18)
 
 
+@pytest.mark.parametrize("poisson", [0.0, 0.3])
+def test_elastic_strain_is_the_inverse_of_lames_law_in_any_frame(poisson):
+    bulk, shear = moduli(poisson)
+    strain = np.random.default_rng(3).normal(size=(3, 3)) * 1e-3
+    strain = strain + strain.T
+    stress = (bulk - 2 / 3 * shear) * np.trace(strain) * np.eye(3) + 2 * shear * strain
+    found = elastic_strain(stress[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]], YOUNG, poisson)
+    np.testing.assert_allclose(found, strain[[0, 1, 0, 2], [0, 1, 1, 2]], rtol=1e-11)
+
+
 def test_surface_strain_follows_a_line_through_two_layers():
+    """Strain that is linear in depth, half elastic and half plastic."""
     depths, slope = np.array([0.3, 1.1]), np.array([2e-3, -1e-3, 5e-4, 4e-4])
     total = np.array([1e-3, 2e-3, -1e-3, 3e-4])[:, None] + slope[:, None] * depths
     bulk, shear = moduli(0.3)

@@ -111,15 +111,24 @@ def test_equal_to_a_direct_solution(coupling):
 
 
 @pytest.mark.parametrize(
-    ("coefficient", "options"),
-    [(0.0, {}), (0.4, {"counterbody": STEEL}), (0.4, {"friction": {"coupling": False}})],
+    ("coefficient", "options", "left_out"),
+    [
+        (0.0, {}, "tangential kernels"),
+        (0.4, {"counterbody": STEEL}, "coupling"),
+        (0.4, {"friction": {"coupling": False}}, "coupling"),
+    ],
 )
-def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(coefficient, options):
-    """The pressure bit for bit; the stress feels a traction."""
+def test_where_traction_moves_no_gap_the_contact_is_that_without_friction(coefficient, options, left_out):
+    """No kernel for the contact, the pressure bit for bit; the stress feels a traction."""
     without = {key: value for key, value in options.items() if key != "friction"}
     plain, sliding = sam.solve(scene(None, **without)), sam.solve(scene(coefficient, **options))
+    assert sliding.left_out[0].stage == left_out and plain.discretisation["tangential_kernels"] == 0
     assert np.array_equal(line(plain, "p_Pa"), line(sliding, "p_Pa"))
     assert (sliding.quantities == plain.quantities) is (coefficient == 0.0)
+    assert sliding.cost["displacement_applications"] == plain.cost["displacement_applications"]
+    counters = Counters()
+    sam.plan(scene(coefficient, **options)).problem(counters).contact(Load(0.65))
+    assert counters.tangential_kernels == 0
 
 
 def test_alternating_traction_mirrors_the_even_cycles():
@@ -135,7 +144,10 @@ def test_alternating_traction_mirrors_the_even_cycles():
 
 
 def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_their_share():
-    """By the traction: those of both add up to that of the contact, their shares to 1."""
+    """The normal displacement of a body by the traction, less its share of that of the contact.
+
+    Those of both bodies add up to that of the contact, and the shares to 1: what is beyond is one number.
+    """
     found = []
     for body, counterbody in ((STEEL, ALUMINIUM), (ALUMINIUM, STEEL)):
         pair = small_scene(body=body, counterbody=counterbody, friction=0.4, grid={"cells": (21, 21)})
@@ -148,6 +160,7 @@ def test_bodies_that_change_places_have_the_same_normal_displacement_beyond_thei
 
 
 def test_a_traction_of_a_field_of_coefficients():
+    """The coefficient may differ from cell to cell: q = coefficient * p in the gap and in the stress."""
     model, now = begin(small_scene(body={"plasticity": SWIFT}, friction=0.3, grid={"cells": (17, 17)}))
     rng, problem = np.random.default_rng(5), model.problem(now.extent)
     field = rng.random(now.state.pressure.shape)

@@ -22,7 +22,7 @@ from sam.kernels.patches import STRESS, Lags, displacement_coefficients, stress_
 from sam.layered.patches import LayeredPatches, Layers, RadialTable, Response, spline_matrix, wave_numbers
 from sam.results.history import Coated, Comparison
 from sam.results.tables import coated_quantities
-from sam.scene import Status
+from sam.scene import Scene, Status
 
 THICKNESS = 1e-7
 COATED = Layers(80e9, 0.3, THICKNESS, 210e9, 0.25)
@@ -134,12 +134,17 @@ def test_bad_layers_are_refused(field, value):
 QUADRATURE = 1e-9
 """Of the largest component, against quadrature; measured 3e-10 and below (issue: 1e-7)."""
 LAGS = [(0, 0), (1, 0), (3, 2), (0, 4)]
+MATERIALS = pytest.mark.parametrize(
+    "layers, load", [(COATED, 1), (COATED, 2), (COATED, 3), (STIFF, 3), (SOFT, 1), (SOFT, 3)]
+)
 
 
 def waves(cell, lags, decay):
-    """Wave vectors in polar panels (units 1/h) and weights of each lag: k, phi, (lags, k, phi) complex.
+    """Wave vectors in polar panels (units 1/h) and the weights of each lag: k, phi, (lags, k, phi) complex
+    weights.
 
-    Gauss-Legendre up to k = 34/decay, e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves k r.
+    Gauss-Legendre in k up to 34/decay, where e^{-k decay} = 2e-15; trapezoidal in phi, exact once it resolves
+    k r.
     """
     top, reach = 34 / decay, max(np.hypot((i + 1) * cell[0], (j + 1) * cell[1]) for i, j in lags)
     t, w = np.polynomial.legendre.leggauss(16)
@@ -155,8 +160,43 @@ def waves(cell, lags, decay):
     return k, phi, [load * np.exp(1j * (kx * i * cell[0] + ky * j * cell[1])) for i, j in lags]
 
 
+def wave_tensors(in_plane, antiplane, phi, load):
+    """Stress tensor in x, y, z, (3, 3, k, phi), of a traction e^{i k x} along x (1), y (2) or z (3)."""
+    c, s, zero = np.cos(phi), np.sin(phi), np.zeros(in_plane.shape[-1])
+    rotation = np.array([[c, -s, 0 * c], [s, c, 0 * c], [0 * c, 0 * c, 0 * c + 1]])  # columns: L, T, z
+    total, turn = 0, np.einsum("iap,jbp->ijpab", rotation, rotation).reshape(-1, 9)
+    for source in range(3):  # traction along L, T, z; sin = Re(-i e), so a load e^{ikL} along L has q_L = i
+        if source == 1:
+            zt, lt = antiplane
+            local = np.array([[zero, 1j * lt, zero], [1j * lt, zero, zt], [zero, zt, zero]])
+        else:
+            zz, along, across, zl = in_plane[0] if source == 2 else 1j * in_plane[1]
+            local = np.array([[along, zero, -1j * zl], [zero, across, zero], [-1j * zl, zero, zz]])
+        turned = (turn @ local.reshape(9, -1)).reshape(3, 3, phi.size, -1)
+        total = total + rotation[load - 1, source][:, None] * turned
+    return np.swapaxes(total, -1, -2)
+
+
+def by_quadrature(layers, cell, lags, height, load):
+    """Six stresses at the lags, (lags, 6), at the depth height times thickness."""
+    k, phi, weights = waves(cell, lags, height)
+    tensor = wave_tensors(*Response(layers, k).stress(height * layers.thickness), phi, load)
+    picked = [tensor[int(name[0]) - 1, int(name[1]) - 1] for name in STRESS]
+    return np.array([[np.sum(f * w).real for f in picked] for w in weights])
+
+
 def at(coefficients, lags):
     return np.array([coefficients[..., i, j] for i, j in lags])
+
+
+@MATERIALS
+def test_stress_equals_quadrature(layers, load):
+    """In the film on both sides of where a closed form is taken out, at the interface, in the body."""
+    for cell, height in (((1.0, 0.7), 0.8), ((0.4, 0.5), 0.6), ((0.4, 0.5), 1.0), ((0.7, 1.0), 2.5)):
+        answer = by_quadrature(layers, cell, LAGS, height, load)
+        lags = Lags(4, 5, cell[0] * THICKNESS, cell[1] * THICKNESS)
+        ours = at(LayeredPatches(layers).stress(lags, [height * THICKNESS], load=load)[:, 0], LAGS)
+        assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max(), (cell, height)
 
 
 def displacement_by_quadrature(layers, cell, lags, load):
@@ -177,9 +217,7 @@ def displacement_by_quadrature(layers, cell, lags, load):
     return excess + at(np.array(film), lags)
 
 
-@pytest.mark.parametrize(
-    "layers, load", [(COATED, 1), (COATED, 2), (COATED, 3), (STIFF, 3), (SOFT, 1), (SOFT, 3)]
-)
+@MATERIALS
 def test_displacement_equals_quadrature(layers, load):
     for cell in ((1.0, 0.7), (0.3, 0.4)):
         answer = displacement_by_quadrature(layers, cell, LAGS, load)
@@ -189,7 +227,7 @@ def test_displacement_equals_quadrature(layers, load):
         assert np.abs(ours - answer).max() < QUADRATURE * np.abs(answer).max()
 
 
-@pytest.mark.parametrize("load, nu", [*product((1, 3), (0.0, 0.3, 0.5)), (2, 0.3)])
+@pytest.mark.parametrize("load, nu", [*product((1, 3), (0.0, 0.3, 0.5))])
 @pytest.mark.parametrize("cell", [0.1, 1.0, 10.0])
 def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
     """Smaller and larger than the thickness; radial tables of a spline of fifth degree hold 1e-11."""
@@ -209,7 +247,11 @@ def test_cells_of_equal_materials_are_as_without_film(cell, load, nu):
     "over, factors", [(1.0, (0.6464, 0.2914, 0.0809, 0.0189)), (2.0, (0.9106, 0.6437, 0.2449, 0.0666))]
 )
 def test_published_stress_under_a_disc(over, factors):
-    """sigma_33/p at the interface on the axis, nu = 1/2: tables of Fox (1948), after Burmister (1945)."""
+    """sigma_33/p at the interface on the axis of a disc of radius `over` thicknesses, nu = 1/2, E1/E2 = 1 ...
+    1000.
+
+    Two-layer pavement (Fox 1948, after Burmister 1945): to the last digit of the tables.
+    """
     for ratio, factor in zip((1, 10, 100, 1000), factors, strict=True):
         samples = Response(Layers(ratio, 0.5, 1.0, 1.0, 0.5), wave_numbers()).stress(1.0)[0][0, :1]
         disc = radial_values(RadialTable(samples, 0, 1.0), np.array([over]), "disc")  # int_0^over g r dr
@@ -256,6 +298,11 @@ def coated(ratio=80 / 210, thickness=0.1, counterbody=None, *, cells=33, grid=No
     )
 
 
+def bare(a_scene: Scene) -> Scene:
+    """The scene with the material of the body up to its surface."""
+    return a_scene.model_copy(update={"body": a_scene.body.model_copy(update={"coating": None})})
+
+
 @pytest.mark.parametrize(
     "more",
     [
@@ -269,8 +316,8 @@ def coated(ratio=80 / 210, thickness=0.1, counterbody=None, *, cells=33, grid=No
 def test_a_film_of_the_material_of_the_body_changes_nothing(more):
     """Also its own comparison says so. 1e-9: ten times the tolerance of the contact."""
     depths = tuple(A0 * np.array([0, 0.1, 0.2, 0.5, 1.0]))
-    more = more | {"cells": 25, "grid": {"extent": (4 * A0, 4 * A0), "depths": depths}}
-    found, expected = (sam.solve(coated(1.0, 0.2, bare=bare, **more)) for bare in (False, True))
+    same = coated(1.0, 0.2, cells=25, grid={"extent": (4 * A0, 4 * A0), "depths": depths}, **more)
+    found, expected = sam.solve(same), sam.solve(bare(same))
     assert found.status is Status.CONVERGED and found.warnings == ()
     for name, value in expected.quantities.items():
         if value is not None and name not in ("mises_max_Pa", "mises_max_depth_m"):
@@ -325,9 +372,12 @@ def test_traction_moves_the_coated_body_and_the_counter_body_apart():
 )
 def test_yielding_is_refused_by_name(body, key):
     film = {"young": 80e9, "poisson": 0.3, "thickness": 1e-6} | body.pop("coating", {})
-    words = key + ".*allows an elastic coating on an elastic body"
-    with pytest.raises(sam.UnsupportedScene, match=words):
-        sam.solve(small_scene(body={"coating": film, **body}))
+    a_scene = small_scene(body={"coating": film, **body})
+    for function in (sam.check, sam.solve):
+        with pytest.raises(
+            sam.UnsupportedScene, match=key + ".*allows an elastic coating on an elastic body"
+        ):
+            function(a_scene)
 
 
 def test_depths_hold_the_film_the_interface_and_what_is_below():

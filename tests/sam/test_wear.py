@@ -52,6 +52,12 @@ def rule(window, fills=False):
     return Wear(strain_limit=0.5, smoothing_window=window, smoothing_fills=fills)
 
 
+def paraboloid(n, radius):
+    """Depth 1 - r^2/radius^2 of a scar on n x n cells; negative outside."""
+    x = np.arange(n) - (n - 1) / 2
+    return 1 - (x[:, None] ** 2 + x**2) / radius**2
+
+
 # limits
 
 
@@ -106,13 +112,18 @@ def test_strain_at_its_limit_does_not_tear():
 
 def test_a_roof_falls_with_what_is_under_it():
     """Linear between centres 0.5, 1.5 ...: strains 1 0 1 1 0 cross 0.5 at 1, 2 and 4. A layer that may strain
-    ten times as much over metal beyond its limit down to z = 4: all of it goes, 2 as the roof.
+    ten times as much over metal beyond its limit down to z = 4: all of it goes, 2 as the roof. Without a
+    roof nothing changes.
     """
     limits, layered = StrainLimits(0.5, 0.5, 0), StrainLimits(0.002, 0.02, 2.0)
     assert fallen([1, 0, 1, 1, 0], range(6), limits) == pytest.approx((4, 2, 1, False))
+    assert fallen([0, 0, 1, 1, 0], range(6), limits) == pytest.approx((4, 2, 2, False))
     assert fallen([1, 0, 1, 1, 0], range(6), limits, False) == (4, 2, 1, False)
     assert fallen([0, 0, 1, 1, 1], range(6), limits, False) == (5, 3, 2, True)
     assert fallen([0.004] * 4 + [0.0], range(6), layered) == pytest.approx((4, 2, 2, False))
+    assert fallen([0.001] * 5, range(6), layered) == (0, 0, 0, False)
+    open_above = fallen([1, 0.2, 0.1], range(4), limits)
+    assert open_above == (removed([1, 0.2, 0.1], range(4), limits)[0], 0, 0, False)
 
 
 PROFILES = st.integers(2, 6).flatmap(
@@ -199,7 +210,9 @@ def test_bad_faces_windows_orders_and_depths_are_refused():
 
 
 def state(seed, faces, nx=5, ny=4, raised=()):
-    """Random deviatoric plastic strain, an accumulated one above its norm, and depths from none to huge."""
+    """Random deviatoric plastic strain, an accumulated one above its norm, and depths of which some are 0,
+    some huge; raised: further shares of the deepest face.
+    """
     rng = np.random.default_rng(seed)
     strain = rng.standard_normal((6, len(faces) - 1, nx, ny))
     strain[2] = -strain[0] - strain[1]
@@ -226,7 +239,9 @@ LAYERS = st.lists(st.floats(0.05, 5), min_size=1, max_size=8)
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10**6), LAYERS, st.sampled_from([(), (-1e-9, -0.03, -1.3)]))
 def test_remap_conserves_and_creates_nothing(seed, thicknesses, raised):
-    """Differences of the integral over depth, a sum over layers, lose the ratio of depth to layer."""
+    """And equals differences of the integral over depth, which is linear over each layer: these are sums of
+    up to eight layers, and lose the ratio of depth to layer.
+    """
     faces = np.concatenate([[0], np.cumsum(thicknesses)]) * UM
     strain, alpha, depth = state(seed, faces, raised=raised)
     new_strain, removed_strain = remapped(strain, faces, depth)
@@ -305,13 +320,13 @@ def test_strain_shifted_where_all_repeats_wears_the_shifted_surface(wraps, fills
 
 @pytest.mark.parametrize("interpolate, fills", [(True, False), (False, False), (True, True)])
 def test_the_books_close_over_25_cycles(interpolate, fills):
-    """Heights of 0.3 um lose their rounding in each cycle. Of the remap: four roundings of the depth, up to
-    five thicknesses, for each overlap, and sums over 14 layers.
+    """Heights of 0.3 um lose their rounding in each cycle; the volume of some um depth is held against it.
+
+    Of the remap: four roundings of the depth, up to five thicknesses, for each overlap, and sums over 14
+    layers.
     """
     rng = np.random.default_rng(5)
-    x = np.arange(25) - 12.0
-    scar = np.maximum(1 - (x[:, None] ** 2 + x**2) / 64, 0)
-    shape = scar * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
+    shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
     original = 0.3 * UM * rng.standard_normal((25, 25))
     current, alpha = original.copy(), np.zeros((len(GRADED) - 1, 25, 25))
     worn = WearState(0.8 * UM**2, np.zeros(original.shape))
@@ -335,8 +350,9 @@ def test_the_books_close_over_25_cycles(interpolate, fills):
 
 @pytest.mark.parametrize("all_removed", [True, False])
 def test_material_that_smoothing_leaves_is_removed_again(all_removed):
-    """The plain filter removes 27/175 of one cell in each cycle until a tenth of its strain is left, and digs
-    the flanks; if all of it goes, the first cycle is the last.
+    """One cell removed, nothing strained later. The plain filter removes 27/175 of it, and its mean strain
+    falls by that factor until a tenth is left, digging the flanks in each cycle; if all of it goes, the
+    first cycle is the last.
     """
     alpha, faces, volumes = np.zeros((6, 9, 9)), np.arange(7.0), []
     alpha[0, 4, 4] = 1.0
