@@ -116,7 +116,8 @@ def publish(case: Sequence[str], *, level: str, out: Path, store: Path, workers:
     with locked(store), locked(out):
         folder, before, kept = suite.begin(out), suite.before(out), KeepsAll(store)
         took = _seconds(REPORTS) | _seconds(out)
-        stays = earlier(before, known, [each.name for each in chosen]) if before else suite.NOTHING
+        of_level = [each.name for each in known.values() if case or each.published_at(level)]
+        stays = earlier(before, of_level, [each.name for each in chosen]) if before else suite.NOTHING
         missing = [each for each in chosen if each.name not in stays.cases]
         longest = sorted(missing, key=lambda each: -took.get(each.name, UNKNOWN))
         failures = _fill(kept, longest, level=level, workers=workers)

@@ -13,7 +13,7 @@ from sam.scene import SceneError
 from verification.cases import case_of
 from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT
 from verification.cases.plastic.plastic_convergence import growth_of_norms, limit_of_both
-from verification.cases.recipes import RECIPES, beside
+from verification.cases.recipes import RECIPES, VALUES, beside
 from verification.cases.sweep import STATISTICS, evaluated, words_of
 from verification.figures.check import findings
 from verification.judging import evaluate
@@ -95,6 +95,38 @@ def test_a_missing_value_is_red_and_two_points_are_no_point(made):
 def test_what_is_no_take_is_refused(made, take):
     with pytest.raises(SceneError, match=r"rows\.limit\.wrong"):
         made(f'wrong = ["at_most", 1.0, "made", "words", "{take}"]')
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        (
+            "vary.resolution = 9",
+            "vary.resolution = 9: [cells, elements] in the contact radius, two whole numbers > 0",
+        ),
+        ('vary.resolution = [8, "x"]', 'fem.cells_per_radius = "x": a whole number from 2 to 256'),
+        ("vary.p0-over-yield = 3.0", "vary.p0-over-yield = 3.0: a number > 0, for a body that yields"),
+        ("vary.nosuch = 1", f"vary.nosuch = 1: one of {', '.join(VALUES)}"),
+        ('set."fem.box" = "wide"', 'fem.box = "wide": a number (in Hertz radii) from 3 to 1000'),
+        ('set."fem.boxx" = 3', "set.fem.boxx = 3: a key of [fem]"),
+        ('set."loading.force" = "3 m"', 'set.loading.force = "3 m": a number in units of N'),
+        (
+            'runs.other = {set."grid.cells" = [3, 3]}',
+            'runs.other.model = "": one of sam, fem, fem-3d, fem-plane-strain',
+        ),
+        (
+            'runs.other = {model = "sam", vary.film = 3}',
+            "vary.film = 3: as in the cases of the suite that use it",
+        ),
+    ],
+)
+def test_what_makes_no_scene_is_refused_before_anything_is_solved(tmp_path, line, problem):
+    path = tmp_path / "made.toml"
+    path.with_suffix(".py").write_text("1 / 0\n")  # of the user, and none of ours
+    path.write_text(FILE.replace("levels", f"{line}\nlevels").replace("{EXTRA}", ""), encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        case_of(read_cases(path)[0])
+    assert str(caught.value) == f"{path}: {problem}"
 
 
 def test_what_is_shown_follows_from_the_words(made, tmp_path):

@@ -140,3 +140,9 @@ def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
     assert publishing.publish([], level="quick", **where) == 2
     assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
     assert run(tmp_path) == before
+
+
+def test_a_case_that_belongs_to_another_level_now_is_left_out(tmp_path, published, monkeypatch):
+    run(tmp_path)
+    monkeypatch.setattr(FakeCase, "published_at", lambda case, _: case.name != "second")
+    assert not any(name.startswith("second") for name in run(tmp_path))

@@ -7,12 +7,16 @@ subclasses of `Case` in a tuple `CASES`.
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
-from sam.scene import Problem, SceneError, spelling
-from verification.cases.case import Case
+from pydantic import ValidationError
+
+from sam.scene import Problem, Scene, SceneError, problems, spelling
+from verification.cases.case import Case, Context
 from verification.cases.compared import Compared
 from verification.cases.recipes import beside
+from verification.cases.sweep import MODELS
 from verification.quantities import QUANTITIES
 from verification.references import REFERENCES
 from verification.rows import FOLDER, LEVELS, CaseFile, case_files
@@ -32,7 +36,10 @@ def case_of(file: CaseFile) -> Case:
     if file.cannot:
         said["needs"] = lambda: beside(file, file.cannot, {})()
     if file.scene or file.frame:
-        return Compared(file.name, **said, alone=file.own or file.alone, file=file)
+        case = Compared(file.name, **said, alone=file.own or file.alone, file=file)
+        if file.own:
+            _check_scenes(case)
+        return case
     module = import_module(f"{__name__}.{file.path.parent.name}.{file.path.stem}")
     (case,) = (case for case in module.CASES if case.name == file.name)
     return replace(case, **said, file=file)
@@ -48,6 +55,8 @@ def _check(file: CaseFile) -> None:
     named = [] if there else [("scene", file.scene, scenes)]
     named += [("reference", file.reference, [*REFERENCES])] if file.reference else []
     named += [("figures", kind.partition(" ")[0], [*KINDS, *SWEPT]) for kind in file.figures]
+    runs = [(f"runs.{name}.model", run.get("model", "")) for name, run in file.runs.items()]
+    named += [(key, model, [*MODELS]) for key, model in runs]
     claims = [claim for claim in file.claims if not claim.take]
     named += [(claim.table, claim.quantity, [*QUANTITIES]) for claim in claims]
     faults = [
@@ -63,6 +72,16 @@ def _check(file: CaseFile) -> None:
     ]
     if faults:
         raise SceneError(faults, str(file.path))
+
+
+def _check_scenes(case: Compared) -> None:
+    """Raises SceneError of a file of a user whose keys, recipes or sweeps make no scene."""
+    for level in case.levels:
+        try:
+            for scene in case.scenes(Context(case.name, Path(), level, lambda *_: None)):
+                Scene.model_validate(scene.model_dump(exclude_none=True))
+        except ValidationError as error:
+            raise SceneError(problems(error), str(case.file.path)) from error
 
 
 __all__ = ["LEVELS", "Case", "all_cases", "case_of"]

@@ -77,6 +77,19 @@ class Compared(Case):
         for sweep in sweeps:
             yield from (changed(base, changes, self.file) for _, changes in points(sweep, context.level))
 
+    def scenes(self, context: Context) -> Iterator[Scene]:
+        """All that the file has solved at this level. Raises SceneError: a key that makes none."""
+        file = self.file
+        for variant in file.variants.values() or ({},):
+            yield scene_of(context, file, variant)
+            yield from (
+                scene_of(context, file, variant, said)
+                for said in (file.runs | variant.get("runs", {})).values()
+            )
+        for sweep in file.sweeps.values():
+            for _, changes in points(sweep, context.level):
+                yield changed(scene_of(context, file), changes, file)
+
     def measure(self, found: Mapping[str, Solved]) -> dict[str, Measured]:
         """The rows of the file: by the vocabulary, by what is between both or all runs, and of the sweeps."""
         values: dict[str, Measured] = {}

@@ -18,8 +18,11 @@ from sam.scene import (
     Loading,
     Path,
     Plasticity,
+    Problem,
     Scene,
+    SceneError,
     in_unit,
+    spelling,
     unit_of_key,
 )
 from verification.cases.case import with_body, with_grid, with_keys, with_loading, with_mesh
@@ -344,12 +347,27 @@ RECIPES: Mapping[str, Callable[[Scene, Any], Scene]] = {
     ),
 }
 """Name in a case file -> what it does to the scene, in the order in which those of a case are applied."""
+VALUES = {
+    "layer": "the keys of a law, as body.plasticity.layer has them",
+    "p0-over-yield": "a number > 0, for a body that yields",
+    "resolution": "[cells, elements] in the contact radius, two whole numbers > 0",
+    "cells": "a whole number > 0, of a side",
+    "depths-over-radius": "a list of numbers, 0 first",
+    "elements": "a whole number > 0, in the contact radius",
+    "friction": "a coefficient, or the keys of [friction]",
+    "even-cells": "[cells in the radius, reach along x, along y, in depth], of a given pressure",
+    "depths": "a number > 0, radii of a given pressure",
+    "load-ratio": "a number > 0, for a wavy surface",
+    "contact-fraction": "a number from 0 to 1, for a wavy surface",
+    "wave-cells": "a whole number > 0, for a wavy surface",
+}
+"""Recipe -> what is allowed, of those that suit any scene."""
 
 
 def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
     """What a name in a case file means: of the module beside it, a registry, or what that module imports."""
     own = None
-    if file.path.with_suffix(".py").exists():
+    if not file.own and file.path.with_suffix(".py").exists():
         module = import_module(f"verification.cases.{file.path.parent.name}.{file.path.stem}")
         own = getattr(module, name.replace("-", "_"), None)
         if getattr(own, "__module__", "") == module.__name__:
@@ -360,15 +378,26 @@ def beside(file: CaseFile, name: str, known: Mapping[str, Any]) -> Any:
 
 
 def changed(scene: Scene, changes: Mapping[str, Any], file: CaseFile) -> Scene:
-    """The scene with keys set, numbers in SI or with their units, and recipes applied, in their order."""
+    """The scene with keys set, numbers in SI or with their units, and recipes applied, in their order.
+    Raises SceneError: key, value, and what is allowed.
+    """
     for key, value in changes.items():
         section, _, name = key.rpartition(".")
-        if isinstance(value, str) and (unit := section and unit_of_key(Scene, key)):
-            if (exact := in_unit(value, unit)) is None:
-                raise ValueError(f"{file.path.name}: {key} = {value!r}; allowed: a number in units of {unit}")
-            value = float(exact)
-        if section:
-            scene = with_keys(scene, section, **{name: tuple(value) if isinstance(value, list) else value})
-        else:
-            scene = beside(file, name, RECIPES)(scene, value)
+        known = (
+            "as in the cases of the suite that use it" if name in RECIPES else f"one of {', '.join(VALUES)}"
+        )
+        allowed = f"a key of [{section}]" if section else VALUES.get(name, known)
+        try:
+            if isinstance(value, str) and (unit := section and unit_of_key(Scene, key)):
+                allowed = f"a number in units of {unit}"
+                value = float(in_unit(value, unit))
+            if section:
+                scene = with_keys(
+                    scene, section, **{name: tuple(value) if isinstance(value, list) else value}
+                )
+            else:
+                scene = beside(file, name, RECIPES)(scene, value)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+            where = f"set.{key}" if section else f"vary.{name}"
+            raise SceneError([Problem(where, spelling(value), allowed)], str(file.path)) from error
     return scene

@@ -57,7 +57,7 @@ RC = {
     "pdf.fonttype": 42,  # fonts go into the file as they are, so that text stays text
 }
 
-DPI = 200
+DPI = 180
 GREY = "#d9d9d9"
 """Of what is not in contact, not known or not compared: never a colour of a map."""
 GUIDE = "guide"

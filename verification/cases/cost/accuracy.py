@@ -73,9 +73,11 @@ def frame(context: Context) -> Iterator[dict[str, Any]]:
     """A row for each scene and accuracy."""
     for name, (scene, truth) in subjects(context).items():
         context.progress(f"accuracy: {name}", 0, 1)
-        kind = "scenes that yield" if has_history(scene) else "scenes that stay elastic"
+        kind, yields = (
+            ("scenes that yield", "yes") if has_history(scene) else ("scenes that stay elastic", "no")
+        )
         for row in searched(context, scene, truth(context, scene), ACCURACIES):
-            yield {"sweep": kind, "model": "sam", "contact": name} | row
+            yield {"sweep": kind, "model": "sam", "contact": name, "yields": yields} | row
 
 
 def searched(
