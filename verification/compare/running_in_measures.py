@@ -13,13 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Scene
-from verification.reference.bonded_film import (
-    MICROSTRAIN,
-    film_pressure,
-    overall_coefficient,
-    swift,
-    tear_pressure,
-)
+from verification.reference import bonded_film
 from verification.runs.sampling import Tables, gridded, rows_of
 
 NAN = float("nan")
@@ -119,7 +113,7 @@ class Scar:
 
     def coefficient(self, low: float, high: float) -> float:
         """Overall coefficient of friction, low + (high - low) W_high/W, W_high: load on failed film."""
-        return overall_coefficient(
+        return bonded_film.overall_coefficient(
             np.nan_to_num(self.p), self.unprotected(low, high), low, high, cell_area=self.cell_area
         )
 
@@ -182,9 +176,9 @@ class Limits:
         limit, law = wear.strain_limit, plasticity
         if plasticity.layer_thickness is not None:
             limit, law = wear.strain_limit_layer or limit, plasticity.layer or law
-        own = swift(law.B, law.C, law.n, limit * (law.alpha / MICROSTRAIN))
+        own = bonded_film.swift(law.B, law.C, law.n, limit * (law.alpha / bonded_film.MICROSTRAIN))
         strength = float(plasticity.depth_profile()(0.0)) * own
         film = friction.film_young, friction.film_poisson, friction.film_yield
         body = scene.body.young, scene.body.poisson
-        fails = film_pressure(friction.thinning_limit, friction.low, film, body)
-        return cls(strength, tear_pressure(strength, friction.high), fails)
+        fails = bonded_film.film_pressure(friction.thinning_limit, friction.low, film, body)
+        return cls(strength, bonded_film.tear_pressure(strength, friction.high), fails)

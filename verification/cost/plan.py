@@ -15,15 +15,7 @@ from verification.cost import estimates
 from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_of, table
 from verification.cost.contact import expected_contact
-from verification.runs import models
-from verification.runs.model_range import (
-    CYLINDER,
-    in_a_sentence,
-    model_range,
-    off_in_words,
-    outside_in_words,
-    range_lines,
-)
+from verification.runs import model_range, models
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -149,7 +141,7 @@ def plan(scene: Scene, model: str | None = None) -> Plan:
     """The plan of every model for its contact; model: of the attributes, by default the first usable."""
     entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]
-    advice, of_model = advice_of(scene, usable), model_range(scene)
+    advice, of_model = advice_of(scene, usable), model_range.model_range(scene)
     contact = expected_contact(scene)
     content = {
         "title": scene.title,
@@ -236,11 +228,12 @@ def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
     """That the contact is outside of the model, and by how much that is off; hertz: elastic a/R."""
     if found is None:
         return []
-    outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
-    like = f"{'as of a sphere at ' * (found['like'] not in ('', CYLINDER))}a/R = {found['a_over_R']:.2g}"
+    outside = [model_range.outside_in_words(found["a_over_R"])] if found["outside"] else []
+    sphere = found["like"] not in ("", model_range.CYLINDER)
+    like = f"{'as of a sphere at ' * sphere}a/R = {found['a_over_R']:.2g}"
     like += " with yielding" * bool(hertz and found["a_over_R"] > 1.01 * hertz)
-    off = off_in_words(found)
-    return [*outside, *([in_a_sentence(off, like)] if off else [])]
+    off = model_range.off_in_words(found)
+    return [*outside, *([model_range.in_a_sentence(off, like)] if off else [])]
 
 
 def _warnings(scene: Scene, entries: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -397,7 +390,7 @@ def _model_lines(content: Mapping[str, Any]) -> list[str]:
             size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    off = [] if content["model_range"] is None else range_lines(content["model_range"])
+    off = [] if content["model_range"] is None else model_range.range_lines(content["model_range"])
     return [*lines, "", *off, content["note"]]
 
 
