@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import elliprd, elliprf
 
 from .checks import Checked, coordinate, depth, poisson, positive
-from .stress import components, von_mises
+from .stress import components, largest_mises
 
 
 def axis_ratio(radius_ratio: float) -> float:
@@ -117,16 +117,9 @@ class EllipticContact(Checked):
 
     def largest_axis_von_mises(self, nu: float) -> tuple[float, float]:
         """Largest von Mises stress on the axis (Pa) and its depth (m), between 0.02 and 2 minor semi-axes."""
-        from scipy.optimize import minimize_scalar  # noqa: PLC0415 - as above
-
         scale = min(self.semi_axes)
-        best = minimize_scalar(
-            lambda t: -float(von_mises(self.axis_stress(t * scale, nu))) / self.peak_pressure,
-            bounds=(0.02, 2.0),
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        return float(-best.fun * self.peak_pressure), float(best.x * scale)
+        largest, depth = largest_mises(lambda t: self.axis_stress(t * scale, nu), (0.02, 2.0))
+        return largest, depth * scale
 
 
 def _confocal(x2, y2, k2) -> np.ndarray:

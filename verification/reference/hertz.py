@@ -26,7 +26,7 @@ import numpy as np
 from scipy.special import elliprd
 
 from .checks import Checked, coordinate, depth, poisson, positive
-from .stress import components, von_mises
+from .stress import components, largest_mises
 
 
 class HertzIntegrals(NamedTuple):
@@ -192,13 +192,6 @@ def axis_stress(z, peak_pressure: float, contact_radius: float, nu: float) -> np
 
 def largest_von_mises(peak_pressure: float, contact_radius: float, nu: float) -> tuple[float, float]:
     """Largest von Mises stress (Pa) under the Hertz pressure and its depth (m), which is on the axis."""
-    from scipy.optimize import minimize_scalar  # noqa: PLC0415 - a fifth of the time of samfem plan
-
     a, p0 = positive("contact_radius", contact_radius), positive("peak_pressure", peak_pressure)
-    best = minimize_scalar(
-        lambda zeta: -float(von_mises(axis_stress(zeta, 1.0, 1.0, nu))),
-        bounds=(0.1, 1.5),
-        method="bounded",
-        options={"xatol": 1e-9},
-    )
-    return float(-best.fun * p0), float(best.x * a)
+    largest, depth = largest_mises(lambda zeta: axis_stress(zeta, 1.0, 1.0, nu), (0.1, 1.5))
+    return largest * p0, depth * a
