@@ -33,14 +33,7 @@ class History:
     @classmethod
     def of(cls, tables: Tables) -> History:
         """From the tables of a run."""
-        columns = (
-            "cycle",
-            "wear_volume_m3",
-            "friction_coefficient",
-            "sa_m",
-            "protected_fraction",
-            "p_max_Pa",
-        )
+        columns = "cycle wear_volume_m3 friction_coefficient sa_m protected_fraction p_max_Pa".split()
         return cls(*(np.asarray(tables["cycles"][name], dtype=float) for name in columns))
 
     def at(self, column: str, cycle: int) -> float:
@@ -113,9 +106,8 @@ class Scar:
 
     def coefficient(self, low: float, high: float) -> float:
         """Overall coefficient of friction, low + (high - low) W_high/W, W_high: load on failed film."""
-        return bonded_film.overall_coefficient(
-            np.nan_to_num(self.p), self.unprotected(low, high), low, high, cell_area=self.cell_area
-        )
+        p, bare = np.nan_to_num(self.p), self.unprotected(low, high)
+        return bonded_film.overall_coefficient(p, bare, low, high, cell_area=self.cell_area)
 
     def protected_fraction(self, low: float, high: float) -> float:
         """Share of the contact area under a whole film."""

@@ -178,9 +178,8 @@ def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
 
     named = {row.method: row.quantity for row in of_kind}
     own = {"error": left(method, cells), "steps_error": left(LOAD_STEPS, scene.loading.steps)}
-    return (
-        found | {"cells_in_radius": cells} | ({"quantity": named[method], **own} if method in named else {})
-    )
+    own = {"quantity": named[method], **own} if method in named else {}
+    return found | {"cells_in_radius": cells} | own
 
 
 def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
@@ -335,9 +334,8 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
 def _fewer(scene: Scene) -> str:
     """Load steps and cycles that can be fewer, with the numbers that they have."""
     given = {"steps": scene.loading.steps, "cycles": scene.loading.cycles}
-    return ", " * any(count > 1 for count in given.values()) + " or ".join(
-        f"loading.{key} = {count}" for key, count in given.items() if count > 1
-    )
+    words = " or ".join(f"loading.{key} = {count}" for key, count in given.items() if count > 1)
+    return f", {words}" if words else ""
 
 
 def _fitting(scene: Scene, model: str, available: float) -> str:
@@ -359,10 +357,8 @@ def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
     surface = scene.patch_surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
-        cells = list(surface.patch()[0])
-        return (
-            f"give a smaller {surface.table}.crop, as grid.cells = {cells} are those of {surface.table}.path"
-        )
+        cells, name = list(surface.patch()[0]), surface.table
+        return f"give a smaller {name}.crop, as grid.cells = {cells} are those of {name}.path"
     if model != models.SAM and surface is not None:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
