@@ -221,9 +221,8 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str) -> Definit
             models.check(test.at({each.name: getattr(each, end) for each in theirs}), model)
         except models.ModelError as error:
             words = f"narrower bounds, or tests within the range of the model: {error}"
-            raise SceneError(
-                [Problem("unknown", f"the {end} values, with {test.name}", words)], source
-            ) from None
+            wrong = Problem("unknown", f"the {end} values, with {test.name}", words)
+            raise SceneError([wrong], source) from None
     return Definition(fit.title, model, tuple(made), theirs, tuple(ours))
 
 
