@@ -81,9 +81,8 @@ class EllipticContact(Checked):
         k2 = (b / a) ** 2
         low = _confocal(x2, y2, k2)
         shape = elliprf(1.0 + low, k2 + low, low)
-        shape = (
-            shape - (x2 * elliprd(k2 + low, low, 1.0 + low) + y2 * elliprd(1.0 + low, low, k2 + low)) / 3.0
-        )
+        along, across = elliprd(k2 + low, low, 1.0 + low), elliprd(1.0 + low, low, k2 + low)
+        shape = shape - (x2 * along + y2 * across) / 3.0
         return self.peak_pressure * b / self.modulus * shape
 
     def gap(self, x, y) -> np.ndarray:

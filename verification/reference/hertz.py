@@ -112,9 +112,8 @@ class CircularContact(Checked):
     def from_peak_pressure(cls, peak_pressure: float, radius: float, modulus: float) -> CircularContact:
         """The contact with peak pressure p0 (Pa): F = pi^3 p0^3 R^2/(6 E*^2)."""
         ratio = positive("peak_pressure", peak_pressure) / positive("modulus", modulus)
-        return cls(
-            math.pi**3 / 6.0 * ratio**2 * peak_pressure * positive("radius", radius) ** 2, radius, modulus
-        )
+        force = math.pi**3 / 6.0 * ratio**2 * peak_pressure * positive("radius", radius) ** 2
+        return cls(force, radius, modulus)
 
     @property
     def contact_radius(self) -> float:
@@ -179,9 +178,8 @@ def subsurface_stress(x, y, z, peak_pressure: float, *, contact_radius: float, n
     mean = 0.5 * i.z0 - (0.5 + nu) * i.i0
     split = 0.5 * i.z2 - (0.5 - nu) * i.i2  # (s_tt - s_rr)/2 over rho^2
     cos2, sin2 = x**2 - y**2, 2.0 * x * y  # rho^2 cos(2 theta), rho^2 sin(2 theta)
-    stress = components(
-        mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0, -y * i.z1, xz=-x * i.z1, xy=-sin2 * split
-    )
+    xx, yy, zz = mean - cos2 * split, mean + cos2 * split, -i.i0 - i.z0
+    stress = components(xx, yy, zz, -y * i.z1, xz=-x * i.z1, xy=-sin2 * split)
     return positive("peak_pressure", peak_pressure) * stress
 
 

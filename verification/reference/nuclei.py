@@ -122,9 +122,9 @@ def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) 
     ]
     green = mindlin_displacement(seeds, Jet(c, 0.0, float(source == 2)), nu)
     part = (along is not None) + 2 * (source is not None)
-    return np.array(
-        [[np.broadcast_to(entry.parts[part], np.shape(entry.parts[0])) for entry in line] for line in green]
-    )
+    parts = [(entry.parts[part], np.shape(entry.parts[0])) for line in green for entry in line]
+    found = np.array([np.broadcast_to(values, shape) for values, shape in parts])
+    return found.reshape(3, 3, *found.shape[1:])
 
 
 def _elasticity(nu: float) -> np.ndarray:
