@@ -26,9 +26,8 @@ CORE = {
     "sam.scene.surface": "counter",
     "sam.tribofilm": "law state",
     "fem_reference.axisymmetric": "misfit problem recovery",
-    "fem_reference.common": (
-        "back_stress contact elasticity hertz layered_force plasticity quadrilaterals recovery"
-    ),
+    "fem_reference.common": "back_stress contact elasticity hertz layered_force plasticity "
+    "quadrilaterals recovery",
     "fem_reference.spatial": "hexahedra problem",
     "verification.uncertainty": "rule",
 }
