@@ -157,9 +157,8 @@ def _mesh_of(arrays: Mapping[str, np.ndarray]) -> Any:
             raise ValueError("shapes")
         if not ((nodes >= 0) & (nodes < len(points))).all() or kinds.shape != ends.shape:
             raise ValueError("nodes")
-        if not all(
-            kind in _ANY_SIZE or (sizes[kinds == kind] == _size(kind)).all() for kind in np.unique(kinds)
-        ):
+        fixed = set(np.unique(kinds).tolist()) - set(_ANY_SIZE)
+        if not all((sizes[kinds == kind] == _size(kind)).all() for kind in fixed):
             raise InputError("it has cells that are not read: those of fixed numbers of nodes are")
         mesh = pyvista.UnstructuredGrid(np.insert(nodes, ends - sizes, sizes), kinds, points)
     for name, values in arrays.items():
