@@ -298,7 +298,7 @@ def _entry(path: Path) -> Entry:
         version = code_version(what) if what in models.MODELS else ""
         version = version_of_cases() if kind == OUTCOME else version
         state = STALE if _is_stale(values, version) else CURRENT
-        said = (values[name] for name in ("title", "created", "commit"))
-        return Entry(path, str(kind), str(what), *said, state, size)
+        said = {name: values[name] for name in ("title", "created", "commit")}
+        return Entry(path, str(kind), str(what), state=state, size=size, **said)
     except (OSError, ArchiveError):
         return Entry(path, "", "", "", "", "", DAMAGED, size)
