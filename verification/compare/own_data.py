@@ -132,16 +132,10 @@ def _read_csv(path: Path) -> tuple[str, dict[str, np.ndarray]]:
         raise _refused(path, [Problem("columns", said, f"lengths in m as {wanted}")])
     (name,) = named
     known = f"{name}.csv has {', '.join(COLUMNS[name])}"
-    faults = [
-        Problem(column, "", unknown("column", [column], COLUMNS[name], known))
-        for column in frame.columns
-        if column not in COLUMNS[name]
-    ]
-    columns = {
-        column: frame[column].to_numpy()
-        for column in frame.columns
-        if column == "state" or not (faults or frame[column].isna().all())
-    }
+    strange = [column for column in frame.columns if column not in COLUMNS[name]]
+    faults = [Problem(each, "", unknown("column", [each], COLUMNS[name], known)) for each in strange]
+    empty = set(frame.columns[frame.isna().all()]) if not faults else {*frame}
+    columns = {each: frame[each].to_numpy() for each in frame if each == "state" or each not in empty}
     faults += _bad_cells(columns)
     if faults or not len(frame):
         raise _refused(path, faults or [Problem("", "", "the table has no rows")])

@@ -391,8 +391,6 @@ def affordable(choice: Choice, scene: Scene, model: str, before: float) -> float
         raise BeyondError(f"{choice} would be next: about {needed} of memory needed, {machine} available")
     if before + needs.time_s > LONGEST:
         own, all_of_it = with_time(needs.time_s), with_time(LONGEST)
-        raise BeyondError(
-            f"{choice} would be next: about {own} of processor time after {with_time(before)}, {all_of_it} "
-            "allowed for all solves"
-        )
+        time = f"{own} of processor time after {with_time(before)}, {all_of_it} allowed for all solves"
+        raise BeyondError(f"{choice} would be next: about {time}")
     return needs.time_s

@@ -144,10 +144,8 @@ def cycles(counts: Iterable[int], *, family: str = "cycles", renewed: bool = Fal
     scene = _patch(with_keys(scene_of("running-in-bulk"), "loading", steps=3, unload_steps=3), 32)
     if renewed:
         scene = with_keys(scene, "counterbody", surface=CounterSurface(**PLANE))
-    return [
-        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, with_keys(scene, "loading", cycles=n), n)
-        for n in counts
-    ]
+    cycled = {n: with_keys(scene, "loading", cycles=n) for n in counts}
+    return [Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, each, n) for n, each in cycled.items()]
 
 
 def elements(

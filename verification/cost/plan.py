@@ -316,10 +316,8 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
     needs = estimates.estimate(scene, model, made)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
-        raise models.ModelError(
-            f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
-            + _fitting(scene, model, available)
-        )
+        words = _smaller(scene, model) + _fitting(scene, model, available)
+        raise models.ModelError(f"model {model}: about {needed} of memory needed, {there} available: {words}")
     if anyway:
         return made
     seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)

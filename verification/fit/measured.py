@@ -116,10 +116,8 @@ def faults(points: Points, kind: str, radius: float, elastic: float) -> list[Pro
         return [Problem("depth", f"at most {deepest:.3g} m", words)]
     up = ~points.unloading
     force, depth, back = points.x[up], points.depth[up], int(points.unloading.sum())
-    first, fallen = (
-        np.interp(0.0, force[:FEWEST], depth[:FEWEST]),
-        (np.maximum.accumulate(force) - force).max(),
-    )
+    first = np.interp(0.0, force[:FEWEST], depth[:FEWEST])
+    fallen = (np.maximum.accumulate(force) - force).max()
     touch = f"points from the first touch on, some below {FOOT:g} of the largest force"
     order = "one loading and one unloading, in the order in which they were measured"
     near = "near zero there: count it from the first touch"

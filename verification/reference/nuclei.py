@@ -89,12 +89,8 @@ def mindlin_displacement(place, c, nu: float) -> list[list]:
     radial = height * a + k * height * b + saddle * depth - pole / r2  # u_x by the normal force, over x
     normal = k / r1 + (8 * m * m - k) / r2 + height * height * a + (k * depth * depth - 2 * c * z) * b
     normal = normal + saddle * depth * depth
-    green = [
-        [in_plane(x), across, x * radial],
-        [across, in_plane(y), y * radial],
-        [x * down, y * down, normal],
-    ]
-    return [[entry / (16 * np.pi * m) for entry in line] for line in green]
+    along = [[in_plane(x), across, x * radial], [across, in_plane(y), y * radial]]
+    return [[entry / (16 * np.pi * m) for entry in line] for line in (*along, [x * down, y * down, normal])]
 
 
 def point_response(load: int, place, nu: float) -> np.ndarray:

@@ -232,10 +232,8 @@ def _unstructured(fields: FieldMesh) -> Any:
         sizes += [np.full(len(corners), len(order))]
         nodes += [np.asarray(corners, dtype=np.int64)[:, order].ravel()]
     ends = np.append(0, np.cumsum(np.concatenate(sizes)))
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(ends.astype(np.int64), deep=1),
-        numpy_to_vtkIdTypeArray(np.concatenate(nodes), deep=1),
-    )
+    numbers = ends.astype(np.int64), np.concatenate(nodes)
+    cells.SetData(*(numpy_to_vtkIdTypeArray(each, deep=1) for each in numbers))
     mesh.SetCells(numpy_to_vtk(np.concatenate(kinds), deep=1), cells)
     _add(mesh.GetPointData(), fields.point_data)
     _add(mesh.GetCellData(), fields.cell_data)

@@ -371,12 +371,8 @@ CHECKS: Mapping[str, Check] = {
     "zero": zero,
 }
 """Checks by the names that rows give them."""
-MADE: Mapping[str, Callable[..., list[Deviation]]] = {
-    "refinement": within_refinement,
-    "without": without,
-    "patch": as_patch,
-    "sum": as_sum,
-}
+MADE: Mapping[str, Callable[..., list[Deviation]]]
+MADE = {"refinement": within_refinement, "without": without, "patch": as_patch, "sum": as_sum}
 """Checks that rows name with what they are about; every other one is a comparison as `against` makes it."""
 
 

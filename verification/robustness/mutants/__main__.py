@@ -36,12 +36,9 @@ def check(modules: Sequence[str], files: Sequence[str], progress: Callable[[str,
     equivalent = [mutant for mutant in every if mutant.key in scope.constants("equivalent")]
     mutants = [mutant for mutant in every if mutant not in equivalent and scope.drawn(mutant)]
     rows, names, known = frozen.read(), {mutant.function for mutant in every}, set(scope.modules())
-    killers = {
-        test
-        for row in rows
-        if row["module"] in chosen or (row["module"] not in known and row["function"] in names)
-        for test in row["tests"]
-    }
+    moved = [row for row in rows if row["module"] not in known and row["function"] in names]
+    killers = {test for row in rows if row["module"] in chosen for test in row["tests"]}
+    killers |= {test for row in moved for test in row["tests"]}
     answer: dict = {}
 
     def work(items) -> None:

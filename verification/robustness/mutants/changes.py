@@ -25,11 +25,8 @@ MORE = 2
 HOOK = "_perturbed_number_"
 """Begins the names of `Number` in a rewritten module; one underscore: a class changes those with two."""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
-OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
-    one: other
-    for pair in ((ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn))
-    for one, other in (pair, pair[::-1])
-}
+OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.Is: ast.IsNot, ast.In: ast.NotIn}
+OPPOSITE |= {other: one for one, other in OPPOSITE.items()}
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,8 @@ def read() -> list[dict]:
     if not FILE.is_file():
         return []
     with FILE.open(encoding="utf-8", newline="") as lines:
-        return [
-            row | {name: json.loads(row[name]) for name in ("survivors", "tests")}
-            for row in csv.DictReader(lines)
-        ]
+        rows = list(csv.DictReader(lines))
+    return [row | {name: json.loads(row[name]) for name in ("survivors", "tests")} for row in rows]
 
 
 def short(test: str) -> str:
