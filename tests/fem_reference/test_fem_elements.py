@@ -22,7 +22,7 @@ from fem_reference.spatial import area as areas
 from fem_reference.spatial.hexahedra import HexSolid
 from fem_reference.spatial.surface import hertz_forces
 from sam.scene.yield_curve import Linear
-from verification.reference.nuclei import mindlin_displacement
+from verification.reference.point_loads import boussinesq_displacement, cerruti_displacement
 
 YOUNG, POISSON = 2.5, 0.3
 SHEAR = YOUNG / (2 * (1 + POISSON))
@@ -248,6 +248,8 @@ def test_area_behind_a_straight_edge_is_exact():
 def test_far_fields_are_those_of_point_forces():
     """As the references, whose stresses balance the force; a slanted force is the sum of both."""
     points, body = np.array([[0.7, 0.0, -0.5], [-0.4, 0.0, 0.2], [0.3, 1.0, 0.3]]), Elastic(2.5, POISSON)
-    along, _, normal = np.moveaxis(mindlin_displacement(points, 0.0, POISSON), 1, 0) * 2 * (1 + POISSON) / 2.5
+    normal, along = (
+        of(*points, 1.0, young=2.5, nu=POISSON).T for of in (boussinesq_displacement, cerruti_displacement)
+    )
     assert slanted((1.0, 0.0), body, points) == pytest.approx(normal, rel=1e-13, abs=1e-15)
     assert slanted((1.0, 0.7), body, points) == pytest.approx(normal + 0.7 * along, rel=1e-13, abs=1e-15)

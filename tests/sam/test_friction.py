@@ -21,7 +21,7 @@ from sam.kernels.patches import Lags, displacement_coefficients, parity
 from sam.planner.bodies import Bodies
 from sam.scene import Scene
 from sam.schedule import Load
-from verification.reference.nuclei import patch_response
+from verification.reference.quadrature import patch_response
 
 ALUMINIUM = {"young": 70e9, "poisson": 0.33}
 

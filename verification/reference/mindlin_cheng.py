@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .checks import coordinate, depth, finite, poisson, positive
-from .nuclei import point_nucleus
 from .stress import components
 
 
@@ -48,20 +47,35 @@ class EigenstrainSphere:
         return -4.0 * (1.0 - self.nu) * self.strength * self.centre_depth / distance**3
 
     def stress(self, x, y, z) -> np.ndarray:
-        """Stress inside and outside the sphere, (..., 6) in Pa; x, y, z >= 0 in m, broadcast, not
-        the centre itself. That of the sphere's volume of `nuclei.point_nucleus`; inside the sphere its part
-        of a full space, -2 mu K (1/R)_,ij, is replaced by -4 mu K/radius^3 delta_ij = -2 E e/(3 (1 - nu))
-        delta_ij. At the sphere's surface: the outside value.
+        """Stress inside and outside the sphere, (..., 6) in Pa; x, y, z >= 0 in m, broadcast. s_ij = -2 mu K
+        [(1/R1)_,ij + image_ij]; inside the sphere the first term is replaced by the full-space state -4 mu
+        K/radius^3 delta_ij = -2 E e/(3 (1 - nu)) delta_ij. At the sphere's surface: the outside value.
         """
-        place = x, y, z = np.broadcast_arrays(coordinate("x", x), coordinate("y", y), depth("z", z))
+        x, y, z = coordinate("x", x), coordinate("y", y), depth("z", z)
         height = z - self.centre_depth
         inside = x**2 + y**2 + height**2 < self.radius**2
-        volume = 4.0 / 3.0 * np.pi * self.radius**3
-        nucleus = point_nucleus(place, self.centre_depth, self.nu)[:6, :3].sum(axis=1)
-        found = volume * self.eigenstrain * np.moveaxis(nucleus, 0, -1)
-        core = components(*(2.0 / self.radius**3,) * 3) - _second_derivatives(x, y, height)
-        found = found - 2.0 * self.strength * np.where(inside[..., None], core, 0.0)
-        return self.young / (2.0 * (1.0 + self.nu)) * found
+        source = _second_derivatives(x, y, np.where(inside, 2.0 * self.radius, height))
+        core = components(*(2.0 / self.radius**3,) * 3)
+        field = np.where(inside[..., None], core, source) + self._image(x, y, z)
+        shear_modulus = self.young / (2.0 * (1.0 + self.nu))
+        return -2.0 * shear_modulus * self.strength * field
+
+    def _image(self, x, y, z) -> np.ndarray:
+        """Field that frees the surface z = 0; G = 1/R2, R2^2 = x^2 + y^2 + (z + d)^2, subscript 3 = d/d(z +
+        d). xx: 3 G_11 + 4 nu G_22 + 2 z G_113; yy: 3 G_22 + 4 nu G_11 + 2 z G_223; zz: -G_33 + 2 z G_333; yz:
+        G_23 + 2 z G_233; xz: G_13 + 2 z G_133; xy: (3 - 4 nu) G_12 + 2 z G_123.
+        """
+        level = z + self.centre_depth
+        g11, g22, g33, g23, g13, g12 = np.moveaxis(_second_derivatives(x, y, level), -1, 0)
+        gradient = components(
+            3.0 * g11 + 4.0 * self.nu * g22,
+            3.0 * g22 + 4.0 * self.nu * g11,
+            -g33,
+            g23,
+            xz=g13,
+            xy=(3.0 - 4.0 * self.nu) * g12,
+        )
+        return gradient + 2.0 * z[..., None] * _third_derivatives(x, y, level)
 
 
 def _second_derivatives(x, y, z) -> np.ndarray:
@@ -70,3 +84,12 @@ def _second_derivatives(x, y, z) -> np.ndarray:
     products = components(x * x, y * y, z * z, y * z, xz=x * z, xy=x * y)
     delta = components(1.0, 1.0, 1.0)
     return (3.0 * products / square[..., None] - delta) / (square * np.sqrt(square))[..., None]
+
+
+def _third_derivatives(x, y, z) -> np.ndarray:
+    """(1/R)_,ij3 = [-15 x_i x_j z/R^2 + 3 (delta_ij z + delta_i3 x_j + delta_j3 x_i)]/R^5, m^-4."""
+    square = x**2 + y**2 + z**2
+    products = components(x * x, y * y, z * z, y * z, xz=x * z, xy=x * y)
+    linear = components(z, z, 3.0 * z, y, xz=x)
+    bracket = 3.0 * linear - 15.0 * products * (z / square)[..., None]
+    return bracket / (square**2 * np.sqrt(square))[..., None]

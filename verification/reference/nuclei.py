@@ -16,7 +16,6 @@ tensor components e_ab = e_ba = 1.
 
 import numpy as np
 
-from .point_loads import boussinesq_stress, cerruti_stress
 from .quadrature import gauss, over_rectangle
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -91,24 +90,6 @@ def mindlin_displacement(place, c, nu: float) -> list[list]:
     normal = normal + saddle * depth * depth
     along = [[in_plane(x), across, x * radial], [across, in_plane(y), y * radial]]
     return [[entry / (16 * np.pi * m) for entry in line] for line in (*along, [x * down, y * down, normal])]
-
-
-def point_response(load: int, place, nu: float) -> np.ndarray:
-    """Stress (6) and displacement (3) under a unit point load along x, y or z (load 1, 2, 3) on the surface:
-    (9, ...). place: (x, y, z). The stress of a load along y is that of one along x with both axes exchanged.
-    """
-    x, y, z = place
-    if load == 2:
-        stress = cerruti_stress(y, x, z, 1.0, nu=nu)[..., [1, 0, 2, 4, 3, 5]]
-    else:
-        stress = (boussinesq_stress if load == 3 else cerruti_stress)(x, y, z, 1.0, nu=nu)
-    moved = np.broadcast_arrays(*(line[load - 1] for line in mindlin_displacement(place, 0.0, nu)))
-    return np.concatenate([np.moveaxis(stress, -1, 0), np.stack(moved)])
-
-
-def patch_response(load: int, place, half, nu: float) -> np.ndarray:
-    """The same under a unit traction on a rectangle, by quadrature: (9,); half: (half_x, half_y)."""
-    return over_rectangle(lambda *at: point_response(load, at, nu), place, half)
 
 
 def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) -> np.ndarray:

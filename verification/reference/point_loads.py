@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Point forces on the surface of a half-space: Boussinesq (along z, into the body) and Cerruti (along +x).
 
-Their displacements are those of `nuclei.mindlin_displacement` for a force at the surface.
-
 Sources: Boussinesq (1885), Cerruti (1882); Johnson, Contact Mechanics (1985), Eq. 3.18-3.19 and 3.75-3.76,
 rearranged in R + z so that the axis is regular. The force acts at the origin, R^2 = x^2 + y^2 + z^2; x, y, z
 in m, broadcast. ValueError for a point at the origin itself, where the field is singular.
@@ -12,7 +10,7 @@ import math
 
 import numpy as np
 
-from .checks import coordinate, depth, finite, poisson
+from .checks import coordinate, depth, finite, poisson, positive
 from .stress import components
 
 
@@ -55,6 +53,24 @@ def cerruti_stress(x, y, z, force: float, *, nu: float) -> np.ndarray:
     return finite("force", force) / (2.0 * math.pi) * stress
 
 
+def boussinesq_displacement(x, y, z, force: float, *, young: float, nu: float) -> np.ndarray:
+    """Displacement under a normal force (N), (..., 3) in m; at z = 0 u_z = (1 - nu^2) F/(pi E r)."""
+    x, y, z, R, t = _coordinates(x, y, z)
+    nu = poisson("nu", nu)
+    radial = z / R**3 - (1.0 - 2.0 * nu) / (R * t)
+    parts = np.broadcast_arrays(x * radial, y * radial, z**2 / R**3 + 2.0 * (1.0 - nu) / R)
+    return _compliance(force, young, nu) * np.stack(parts, axis=-1)
+
+
+def cerruti_displacement(x, y, z, force: float, *, young: float, nu: float) -> np.ndarray:
+    """Displacement (u_x, u_y, u_z) under a tangential force (N) on the body along +x, (..., 3) in m."""
+    x, y, z, R, t = _coordinates(x, y, z)
+    D = 1.0 - 2.0 * poisson("nu", nu)
+    shared = 1.0 / R**3 - D / (R * t**2)
+    parts = np.broadcast_arrays(1.0 / R + D / t + x**2 * shared, x * y * shared, x * (z / R**3 + D / (R * t)))
+    return _compliance(force, young, nu) * np.stack(parts, axis=-1)
+
+
 def _coordinates(x, y, z):
     """x, y, z, R and t = R + z."""
     x, y, z = coordinate("x", x), coordinate("y", y), depth("z", z)
@@ -62,3 +78,8 @@ def _coordinates(x, y, z):
     if not np.all(R > 0):
         raise ValueError("x, y, z must not be the point of load itself")
     return x, y, z, R, R + z
+
+
+def _compliance(force: float, young: float, nu: float) -> float:
+    """F/(4 pi mu), mu = E/(2 (1 + nu))."""
+    return finite("force", force) * (1.0 + nu) / (2.0 * math.pi * positive("young", young))

@@ -5,6 +5,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from verification.reference.point_loads import (
+    boussinesq_displacement,
+    boussinesq_stress,
+    cerruti_displacement,
+    cerruti_stress,
+)
+
 
 def gauss(order: int) -> tuple[np.ndarray, np.ndarray]:
     """Gauss-Legendre points and weights on (0, 1)."""
@@ -54,3 +61,26 @@ def over_rectangle(f: Callable, place: Sequence[float], half: Sequence[float], o
             total = total + _corner_triangle(f, a, b, z, swap=False, order=order)
             total = total + _corner_triangle(f, b, a, z, swap=True, order=order)
     return total
+
+
+def point_response(load: int, place, nu: float) -> np.ndarray:
+    """Stress (6) and displacement times mu (3) under a unit point load along x, y or z (load 1, 2, 3). place:
+    (x, y, z); (9, ...). Boussinesq and Cerruti; the load along y is the one along x with both axes exchanged.
+    """
+    young = 2 * (1 + nu)  # mu = 1
+    x, y, z = place
+    if load == 2:
+        turned = point_response(1, (y, x, z), nu)
+        return turned[[1, 0, 2, 4, 3, 5, 7, 6, 8]]
+    stress, displacement = (
+        (boussinesq_stress, boussinesq_displacement) if load == 3 else (cerruti_stress, cerruti_displacement)
+    )
+    both = np.concatenate(
+        [stress(x, y, z, 1.0, nu=nu), displacement(x, y, z, 1.0, young=young, nu=nu)], axis=-1
+    )
+    return np.moveaxis(both, -1, 0)
+
+
+def patch_response(load: int, place: Sequence[float], half: Sequence[float], nu: float) -> np.ndarray:
+    """Stress (6) and displacement times mu (3) under a unit traction on a rectangle, by quadrature: (9,)."""
+    return over_rectangle(lambda X, Y, Z: point_response(load, (X, Y, Z), nu), place, half)
