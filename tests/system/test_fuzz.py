@@ -42,9 +42,9 @@ from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
 from verification.suite import verify
 
-SHARED_FOLDER = settings(
-    max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+SHARED = [HealthCheck.function_scoped_fixture]
+SHARED_FOLDER = settings(max_examples=200, deadline=None, suppress_health_check=SHARED)
+LEAVES = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates())
 COUNT = len(TURNS)
 
 
@@ -73,10 +73,8 @@ def test_a_good_mesh_is_read_in_each_format(tmp_path):
 @SHARED_FOLDER
 @given(
     st.recursive(
-        st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates()),
-        lambda inner: st.one_of(
-            st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=9), inner, max_size=4)
-        ),
+        LEAVES,
+        lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=9), inner, max_size=4),
         max_leaves=12,
     ),
     st.sampled_from(["body", "body.young", "counterbody.shape", "loading.steps", "grid.cells", "title"]),

@@ -199,17 +199,13 @@ def test_the_surface_carries_the_load(layers):
 def test_the_interface_holds_together(layers):
     """Both sides have the tractions and the strains along the interface in common, and nothing else."""
     h = layers.thickness
-    film, body = (
-        coated_sliding_stress(layers, 1.0, 1.0, 0.4, x=X, z=h, film=side)[:, 0].T for side in (True, False)
-    )
+    sides = (coated_sliding_stress(layers, 1.0, 1.0, 0.4, x=X, z=h, film=side) for side in (True, False))
+    film, body = (side[:, 0].T for side in sides)
     assert np.abs(film - body)[2:5].max() < ROUNDING
-    strains = [
-        np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young
-        for (xx, yy, zz, *_), young, nu in (
-            (film, layers.young, layers.poisson),
-            (body, layers.young_body, layers.poisson_body),
-        )
-    ]
+    laws = (layers.young, layers.poisson), (layers.young_body, layers.poisson_body)
+    strains = []
+    for (xx, yy, zz, *_), (young, nu) in zip((film, body), laws, strict=True):
+        strains.append(np.array([xx - nu * (yy + zz), yy - nu * (xx + zz)]) / young)
     assert np.abs(strains[0] - strains[1]).max() < ROUNDING * np.abs(strains[0]).max() * 100
     assert np.abs(film - body)[:2].max() > 0.1
 

@@ -19,6 +19,7 @@ from verification.runs.provenance import collect
 from verification.runs.tables import csv_text
 
 THIRD = 1.0 / 3.0
+TABLES = ("history", HISTORY, 2), ("axis", AXIS, 3), ("line", LINE, 4), ("plane", PLANE, 5)
 SCENE = Scene(
     title="Sphere",
     body=Body(young=2e11, poisson=THIRD),
@@ -47,12 +48,7 @@ def a_result(**changes) -> Result:
         "model": "sam",
         "status": Status.CONVERGED,
         "quantities": dict.fromkeys(QUANTITIES) | {"force_N": np.float64(0.1), "approach_m": math.nan},
-        "tables": {
-            "history": table(HISTORY, 2),
-            "axis": table(AXIS, 3),
-            "line": table(LINE, 4),
-            "plane": table(PLANE, 5),
-        },
+        "tables": {name: table(columns, rows) for name, columns, rows in TABLES},
         "bodies": {"peak": mesh},
         "left_out": [LeftOut("tangential kernels", "no [friction]")],
         "discretisation": {"cells": np.array([65, 65]), "h_m": np.float64(THIRD), "dofs": np.int32(7)},

@@ -42,20 +42,16 @@ def test_a_sphere_is_said_or_refused_by_its_contact_radius(body, poisson, ratio)
     found = scene(body, poisson=poisson, loading={"force": force_at(ratio, body, poisson)})
     stated = model_range(found)
     assert stated["a_over_R"] == pytest.approx(ratio, rel=1e-6)
-    named = {
-        name
-        for name, each in stated["quantities"].items()
-        if abs(each["error"]) > max(0.01, each["uncertainty"])
-    }
+    sizes = {name: (abs(each["error"]), each["uncertainty"]) for name, each in stated["quantities"].items()}
+    named = {name for name, (error, doubt) in sizes.items() if error > max(0.01, doubt)}
     said = " ".join(range_lines(stated))
     assert all((name.split("_")[0] in said) == (name in named) for name in ("contact_radius", "approach"))
     assert (body is ELASTIC and poisson == 0.3 and ratio == 0.1) <= ("mean pressure 2.9 % too low" in said)
     if ratio < 0.5:
         models.check(found, models.SAM)
         return
-    with pytest.raises(
-        ModelError, match=r"loading.force = .* N, allowed: at most .*beyond_model = true"
-    ) as no:
+    words = r"loading.force = .* N, allowed: at most .*beyond_model = true"
+    with pytest.raises(ModelError, match=words) as no:
         models.check(found, models.FEM)
     most = float(str(no.value).partition("at most about ")[2].split()[0])
     assert most == pytest.approx(force_at(0.5, body, poisson), rel=6e-3)  # three digits are said

@@ -217,10 +217,7 @@ def test_a_wrong_mapping_is_refused_by_name(results, mapped, tmp_path, edits, wo
 LINE = "x_m,p_Pa\n-3e-6,7e9\n0,8e9\n3e-6,7e9\n"
 WRONG_TABLES = {
     "column": (LINE.replace("p_Pa", "p_MPa"), "unknown column 'p_MPa' (did you mean p_Pa"),
-    "unit": (
-        LINE.replace("e9", "e3"),
-        "line.p_Pa = at most 8 kPa: it is in Pa, and expected at about 8.47 GPa",
-    ),
+    "unit": (LINE.replace("e9", "e3"), "p_Pa = at most 8 kPa: it is in Pa, and expected at about 8.47 GPa"),
     "length in mm": (LINE.replace("3e-6", "3e-3"), "the place, or the unit of length, is another"),
     "length in km": (LINE.replace("3e-6", "3e-9"), "the unit of length is another"),
     "sign": (LINE.replace(",", ",-").replace(",-p", ",p"), "p > 0 is compressive: change the sign"),

@@ -113,8 +113,7 @@ def in_process(program, each, python, allowance=0.0):
 class TestRounds:
     def test_the_page_with_sam_in_the_place_of_all(self, tmp_path, monkeypatch):
         """Times made ten to one, tables and figures whole, a program that is not built."""
-        for module in (running, elastic):
-            monkeypatch.setattr(module, "run", in_process)
+        monkeypatch.setattr(running, "run", in_process)
         monkeypatch.setattr(running, "calibration_s", lambda: 0.2)
         monkeypatch.setattr(peers, "interpreter", lambda: Path("python"))
         monkeypatch.setattr(peers, "installed", lambda _: {"tamaas": "2.9", "contact_mechanics": "1.8"})

@@ -19,15 +19,6 @@ from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
 from verification.runs.code_version import OF_CASES, ROOT, code_version, version_of_cases
 from verification.runs.files import FolderError, json_text, write_run
-from verification.runs.store import (
-    FOLDER,
-    LIMIT,
-    Store,
-    default_store,
-    identity,
-    kept_coefficients,
-    solve_or_reuse,
-)
 
 # what is stored
 
@@ -42,10 +33,8 @@ def test_a_result_comes_back_with_every_type_and_bit_and_writes_the_same_run(
     assert found.result.status is Status.CONVERGED and found.created
     for name, result in (("own", coarse_results[model]), ("stored", found.result)):
         write_run(result, COARSE, tmp_path / name, {})
-    own, stored = (
-        {entry.name: entry.read_bytes() for entry in (tmp_path / name).iterdir()}
-        for name in ("own", "stored")
-    )
+    folders = (tmp_path / name for name in ("own", "stored"))
+    own, stored = ({entry.name: entry.read_bytes() for entry in folder.iterdir()} for folder in folders)
     assert len(own) >= 6 and own == stored
 
 
@@ -56,7 +45,7 @@ def test_the_title_is_no_part_of_the_key_and_everything_else_is(kept):
     assert kept.lookup(COARSE.model_copy(update={"title": "another"}), models.SAM).result is not None
     heavier = COARSE.loading.model_copy(update={"force": np.nextafter(COARSE.loading.force, 1)})
     assert kept.lookup(COARSE.model_copy(update={"loading": heavier}), models.SAM) == store.Lookup()
-    assert identity(COARSE, models.SAM) != identity(COARSE, models.FEM)
+    assert store.identity(COARSE, models.SAM) != store.identity(COARSE, models.FEM)
 
 
 PRAGER = {"plasticity": PERFECT | {"kinematic": {"modulus": (1e10,)}}}
@@ -79,14 +68,14 @@ unwritten. Only a change of their own files, or of a default, may change one; of
 def test_a_key_at_its_default_changes_no_identity_and_no_byte(name):
     """Neither one that is new nor one that is written out, in the store, in checkpoints, in summary.json."""
     scene = load_scene(ROOT / f"verification/scenes/{name}.toml") if isinstance(name, str) else name
-    assert store._key(identity(scene, models.SAM))[:12] == IDENTITIES[name]
+    assert store._key(store.identity(scene, models.SAM))[:12] == IDENTITIES[name]
     written = Scene(**_whole(scene))
     assert written == scene and written.model_fields_set == set(Scene.model_fields)
     assert json_text(resolved(written)) == json_text(resolved(scene))
-    assert identity(written, models.SAM) == identity(scene, models.SAM)
+    assert store.identity(written, models.SAM) == store.identity(scene, models.SAM)
     assert checkpoints.identity(written, models.SAM) == checkpoints.identity(scene, models.SAM)
     beyond = scene.model_copy(update={"solver": scene.solver.model_copy(update={"beyond_model": True})})
-    assert identity(beyond, models.SAM) != identity(scene, models.SAM)
+    assert store.identity(beyond, models.SAM) != store.identity(scene, models.SAM)
     assert resolved(beyond)["solver"]["beyond_model"] is True
 
 
@@ -103,7 +92,7 @@ def test_a_file_that_a_scene_names_counts_by_its_content(tmp_path):
     for name, second in (("a", "2e9"), ("b", "2.0e9"), ("c", "2.1e9")):
         (tmp_path / f"{name}.csv").write_text(f"peeq,yield_stress_Pa\n0,1e9\n0.1,{second}\n")
         (tmp_path / f"{name}.toml").write_text(scene_text() + plastic.format(name))
-        found.append(identity(read_scene(tmp_path / f"{name}.toml")[0], models.SAM))
+        found.append(store.identity(read_scene(tmp_path / f"{name}.toml")[0], models.SAM))
     assert found[0] == found[1] != found[2]
 
 
@@ -113,29 +102,31 @@ def test_an_entry_of_other_code_is_stale_and_is_replaced(kept, counted, monkeypa
     found = kept.lookup(COARSE, models.SAM)
     assert found.result is None
     assert found.note.startswith(f"stale: computed by code {code_version(models.SAM)[:8]} of 20")
-    _, reuse = solve_or_reuse(kept, COARSE, models.SAM)
+    _, reuse = store.solve_or_reuse(kept, COARSE, models.SAM)
     assert counted == [models.SAM] and not reuse.reused and reuse.text == f"{found.note}: computed again"
     assert kept.lookup(COARSE, models.SAM).result is not None and len(kept.entries()) == 2
 
 
 def test_a_result_is_solved_once_and_fresh_on_request(tmp_path, counted):
-    own, before = Store(tmp_path / "deep" / "store"), datetime.now(UTC).replace(microsecond=0)
-    reuses = [solve_or_reuse(own, COARSE, models.SAM)[1] for _ in range(3)]
+    own, before = store.Store(tmp_path / "deep" / "store"), datetime.now(UTC).replace(microsecond=0)
+    reuses = [store.solve_or_reuse(own, COARSE, models.SAM)[1] for _ in range(3)]
     assert counted == [models.SAM] and [reuse.reused for reuse in reuses] == [False, True, True]
     assert all(before <= datetime.fromisoformat(reuse.created) <= datetime.now(UTC) for reuse in reuses)
     assert reuses[1].created == reuses[2].created and "taken from the store: computed 20" in reuses[1].text
-    assert not solve_or_reuse(own, COARSE, models.SAM, fresh=True)[1].reused
-    assert not solve_or_reuse(None, COARSE, models.SAM)[1].reused
+    assert not store.solve_or_reuse(own, COARSE, models.SAM, fresh=True)[1].reused
+    assert not store.solve_or_reuse(None, COARSE, models.SAM)[1].reused
     assert counted == [models.SAM] * 3
 
 
 def test_a_result_is_not_kept_if_the_code_changed_meanwhile(tmp_path, coarse_results, monkeypatch, capsys):
     result = coarse_results[models.SAM]
-    Store(tmp_path).keep(COARSE, models.SAM, replace(result, status=Status.UNDER_RESOLVED))
-    assert Store(tmp_path).entries() == []  # neither what did not converge
+    store.Store(tmp_path).keep(COARSE, models.SAM, replace(result, status=Status.UNDER_RESOLVED))
+    assert store.Store(tmp_path).entries() == []  # neither what did not converge
     monkeypatch.setattr(store, "unchanged", lambda model: False)
-    Store(tmp_path).keep(COARSE, models.SAM, result)
-    assert Store(tmp_path).entries() == [] and "changed since the command began" in capsys.readouterr().err
+    store.Store(tmp_path).keep(COARSE, models.SAM, result)
+    assert (
+        store.Store(tmp_path).entries() == [] and "changed since the command began" in capsys.readouterr().err
+    )
 
 
 # the version of the code
@@ -231,27 +222,31 @@ def full(*_):
 def test_a_store_that_cannot_be_written_costs_one_warning_and_no_result(
     tmp_path, counted, capsys, monkeypatch, why
 ):
-    own = Store(tmp_path / "place" / "store")
+    own = store.Store(tmp_path / "place" / "store")
     if why == "Not a directory":
         own.folder.parent.write_text("")
     else:
         monkeypatch.setattr(os, "fsync", full)
     for _ in range(2):
-        assert solve_or_reuse(own, COARSE, models.SAM)[0].converged
+        assert store.solve_or_reuse(own, COARSE, models.SAM)[0].converged
     message = capsys.readouterr().err
-    assert message.count("\n") == 1 and f"warning: store {own.folder}: {why}" in message and FOLDER in message
+    assert (
+        message.count("\n") == 1
+        and f"warning: store {own.folder}: {why}" in message
+        and store.FOLDER in message
+    )
     assert own.entries() == [] and own.left_over() == []
 
 
 def test_a_limit_of_coefficients_that_is_no_number_is_refused(monkeypatch):
-    monkeypatch.setenv(LIMIT, "2 GB")
+    monkeypatch.setenv(store.LIMIT, "2 GB")
     with pytest.raises(FolderError, match="SAMFEM_COEFFICIENTS = 2 GB: a number of bytes is needed"):
-        kept_coefficients()
+        store.kept_coefficients()
 
 
 def _keep_and_die(folder: Path, result) -> None:
     os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)
-    Store(folder).keep(COARSE, models.SAM, result)
+    store.Store(folder).keep(COARSE, models.SAM, result)
 
 
 def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, coarse_results):
@@ -260,7 +255,7 @@ def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, c
     process.start()
     process.join(20)
     assert process.exitcode == -signal.SIGKILL
-    own = Store(tmp_path)
+    own = store.Store(tmp_path)
     assert own.entries() == [] and own.lookup(COARSE, models.SAM) == store.Lookup()
     (left,) = own.left_over()
     living = left.with_name(left.name.replace(f".{process.pid}.", f".{os.getpid()}."))
@@ -273,16 +268,13 @@ def test_a_killed_process_leaves_a_temporary_file_that_prune_removes(tmp_path, c
 
 
 def test_the_folder_of_the_store(monkeypatch, tmp_path):
-    monkeypatch.setenv(FOLDER, "")
-    assert default_store() is None
-    monkeypatch.setenv(FOLDER, str(tmp_path))
-    assert default_store().folder == tmp_path
-    monkeypatch.delenv(FOLDER)
+    monkeypatch.setenv(store.FOLDER, "")
+    assert store.default_store() is None
+    monkeypatch.setenv(store.FOLDER, str(tmp_path))
+    assert store.default_store().folder == tmp_path
+    monkeypatch.delenv(store.FOLDER)
     monkeypatch.setenv("HOME", str(tmp_path))
-    for caches, expected in (
-        (str(tmp_path / "c"), tmp_path / "c"),
-        ("", tmp_path / ".cache"),
-        ("c", tmp_path / ".cache"),
-    ):
+    usual = tmp_path / ".cache"
+    for caches, expected in ((str(tmp_path / "c"), tmp_path / "c"), ("", usual), ("c", usual)):
         monkeypatch.setenv("XDG_CACHE_HOME", caches)
-        assert default_store().folder == expected / "samfem"
+        assert store.default_store().folder == expected / "samfem"

@@ -78,11 +78,10 @@ def test_draws_depend_on_the_seed_and_on_their_own_key_only(folder):
     both = study(folder, f"{other}\n{draw}", 'seed = 1\nmode = "zip"')
     assert column(both, "body.young") == first
     assert min(first) > 200e9 and max(first) < 220e9
-    assert np.mean(first) == pytest.approx(
-        210e9, abs=5 * 20e9 / np.sqrt(12 * 200)
-    )  # uniform: five sigma of the mean
+    sigmas = 5 / np.sqrt(12 * 200)  # five of the mean of uniform numbers
+    assert np.mean(first) == pytest.approx(210e9, abs=20e9 * sigmas)
     radii = np.log10(column(both, "counterbody.radius"))
-    assert np.mean(radii) == pytest.approx(-3.0, abs=5 * 6 / np.sqrt(12 * 200))
+    assert np.mean(radii) == pytest.approx(-3.0, abs=6 * sigmas)
 
 
 def test_the_first_draws_are_those_of_every_machine(folder):

@@ -181,9 +181,8 @@ def test_the_edge_of_a_contact_inside_an_element_leaves_something_of_the_approac
     wet = {"contact_area_m2": np.pi * 1e-8, "approach_m": 2e-7, "peeq_max": 0.01}
     result = Result(FEM, Status.CONVERGED, wet, {}, cost={"solve_s": 1.0})
     own = {"grid": None, "fem": {"cells_per_radius": 20}}
-    yielding, elastic = (
-        solve(Scene(**tables | own), FEM, lambda *_: result).uncertainty for tables in (YIELDING, ELASTIC)
-    )
+    scenes = (Scene(**tables | own) for tables in (YIELDING, ELASTIC))
+    yielding, elastic = (solve(scene, FEM, lambda *_: result).uncertainty for scene in scenes)
     assert yielding["approach_m"]["u_cells"] == pytest.approx(0.1 * 2e-7 / 20**2, rel=1e-12)
     assert yielding["peeq_max"]["u_cells"] == 0.0 == elastic["approach_m"]["u_cells"]
 
@@ -292,9 +291,8 @@ def test_what_a_doubtful_reference_says_does_not_count():
     assert known["covered-by-uncertainty"] == 1.0 and "over-error" not in unknown
     assert study.judged(entry, 2.0, doubt=0.0)["covered-by-uncertainty"] == 0.0
     values = (study.judged(entry, 1.2, doubt=doubt) for doubt in (0.09, 0.11))
-    rows = pd.DataFrame(
-        [{"problem": f"film {k}", "quantity": study.AREA} | each for k, each in enumerate(values)]
-    )
+    named = ({"problem": f"film {k}", "quantity": study.AREA} | each for k, each in enumerate(values))
+    rows = pd.DataFrame(list(named))
     told = [each[:5] for each in study.both_rules(rows).rows]
     assert told == [[name, "1", "1", "100", "1.5"] for name in ("film", "contact area")]
 

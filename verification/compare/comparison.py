@@ -35,8 +35,7 @@ CENTRE, SPOT = "pressure_centroid_x_m on the line", "load of the spot"
 SIDES = {"cylinder", "spatial"}  # kinds of scenes that are compared on both sides of the axis
 WITHIN = 2.0  # contact radii: the part of line, axis and plane that is compared
 INSIDE_EDGE = 0.8  # of a punch's radius: its pressure is compared up to there
-# of the radius of a plastic contact: likewise, as the pressure falls within a cell at its edge
-INSIDE_FLOW = 0.9
+INSIDE_FLOW = 0.9  # of the radius of a plastic contact: likewise, as pressure falls within a cell at its edge
 RING = 0.25  # of the radius of a plastic contact: over hats of this half width its whole pressure is compared
 EDGE_ZONE = 0.25  # of a punch's radius: around its edge no stress is compared
 ROUNDING = 1e-9  # of a depth: the interface is where a model says it is to within this
@@ -44,9 +43,8 @@ ROUNDING = 1e-9  # of a depth: the interface is where a model says it is to with
 
 _TEXT = Path(__file__).with_name("rows.toml").read_text(encoding="utf-8")
 _REASONS = tomllib.loads(_TEXT)["reasons"]
-TABLES: Mapping[str, Mapping[str, Any]] = tomllib.loads(
-    re.sub(r"@([a-z-]+)", lambda found: _REASONS[found[1]], _TEXT)
-)
+_WHOLE = re.sub(r"@([a-z-]+)", lambda found: _REASONS[found[1]], _TEXT)
+TABLES: Mapping[str, Mapping[str, Any]] = tomllib.loads(_WHOLE)
 """Kind of scene -> name -> what `rows.toml` says, with reasons written out."""
 
 

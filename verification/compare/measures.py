@@ -18,15 +18,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from sam.scene import UNLOADED, Result
 from verification.judging import relative_l2
-from verification.runs.sampling import (
-    Tables,
-    gridded,
-    peak,
-    plane_field,
-    pressure_map,
-    rows_of,
-    surface_nodes,
-)
+from verification.runs import sampling
 
 # in elastic contact radii, or in radii of a spot
 SHALLOWEST = 0.3  # above it the plastic strain near the surface depends on the mesh
@@ -46,9 +38,9 @@ class Plane:
     jump: float = 0.0
 
     @classmethod
-    def of(cls, tables: Tables, unit: float = 1.0, jump: float = 0.0) -> Plane:
+    def of(cls, tables: sampling.Tables, unit: float = 1.0, jump: float = 0.0) -> Plane:
         """From the tables of a result or of a run; unit: of length in m."""
-        x, z, peeq = plane_field(tables, "peeq")
+        x, z, peeq = sampling.plane_field(tables, "peeq")
         return cls(x / unit, z / unit, peeq, jump)
 
     def at(self, x: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -130,8 +122,8 @@ def nodal_pressures(sam: Result, fem: Result) -> tuple[np.ndarray, np.ndarray, n
     ny) each, in Pa and m^2. A nodal force of FEM is the integral of the pressure with the shape
     function of the node: that of SAM is integrated so.
     """
-    x, y, p_fem = surface_nodes(fem)
-    u, v, p = pressure_map(sam)
+    x, y, p_fem = sampling.surface_nodes(fem)
+    u, v, p = sampling.pressure_map(sam)
     faces_x, faces_y = (np.append(c - (h := np.ptp(c) / (c.size - 1)) / 2, c[-1] + h / 2) for c in (u, v))
     whole = np.concatenate([-y[:0:-1], y])
     p_sam = (hat_means(x, faces_x) @ p @ hat_means(whole, faces_y).T)[:, y.size - 1 :]
@@ -144,7 +136,7 @@ def patch_pressures(result: Result, fem: Result, width: float) -> np.ndarray:
     other: over hats of a length that does not go with the elements both sides of the edge are taken
     together.
     """
-    x, y, p_fem = surface_nodes(fem)
+    x, y, p_fem = sampling.surface_nodes(fem)
     p = p_fem if result is fem else nodal_pressures(result, fem)[0]
     count = int(min(abs(x[0]), x[-1]) / width)
     centres = np.arange(-count, count + 1) * width
@@ -181,7 +173,7 @@ def stresses_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], n
         x, y, z = result.fields.points[result.fields.cells["hexahedron"]].mean(axis=1).T
         stress = np.asarray(result.fields.cell_data["stress_Pa"])
     else:
-        z, *columns = peak(result.tables["axis"], "z_m", *(f"{name}_Pa" for name in COMPONENTS))
+        z, *columns = sampling.peak(result.tables["axis"], "z_m", *(f"{name}_Pa" for name in COMPONENTS))
         x, y, stress = np.zeros(z.size), np.zeros(z.size), np.stack(columns, axis=1)
     use = _inside(x, z, a) & (np.abs(y) <= WIDE * a)
     return (x[use], y[use], z[use]), stress[use]
@@ -189,7 +181,7 @@ def stresses_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], n
 
 def mises_inside(result: Result, a: float) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
     """Places and von Mises stresses (n,) in Pa of SAM in the plane y = 0."""
-    x, z, mises = peak(result.tables["plane"], "x_m", "z_m", "mises_Pa")
+    x, z, mises = sampling.peak(result.tables["plane"], "x_m", "z_m", "mises_Pa")
     use = _inside(x, z, a)
     return (x[use], np.zeros(use.sum()), z[use]), mises[use]
 
@@ -222,14 +214,14 @@ def limit_of_strain(
 def growth(before: Result, after: Result) -> float:
     """Plastic strain that a cycle adds: largest anywhere in y = 0, where a load travels."""
     cycles = [len(each.tables["cycles"]["peeq_max"]) for each in (before, after)]
-    one, other = (rows_of(each.tables["plane"], UNLOADED, "peeq")[0] for each in (before, after))
+    one, other = (sampling.rows_of(each.tables["plane"], UNLOADED, "peeq")[0] for each in (before, after))
     return float((other - one).max()) / (cycles[1] - cycles[0])
 
 
-def patch_pressure(tables: Tables) -> tuple[np.ndarray, ...]:
+def patch_pressure(tables: sampling.Tables) -> tuple[np.ndarray, ...]:
     """Of a rough patch at peak load: x (nx,), y (ny,) in m, p (nx, ny) in Pa."""
-    x, y, p = peak(tables["surface"], "x_m", "y_m", "p_Pa")
-    return gridded(np.round(x, 15), np.round(y, 15), p)
+    x, y, p = sampling.peak(tables["surface"], "x_m", "y_m", "p_Pa")
+    return sampling.gridded(np.round(x, 15), np.round(y, 15), p)
 
 
 class Spot(NamedTuple):
@@ -242,7 +234,7 @@ class Spot(NamedTuple):
     radius: float
 
 
-def spots(sam: Tables, fem: Tables) -> list[Spot]:
+def spots(sam: sampling.Tables, fem: sampling.Tables) -> list[Spot]:
     """Regions of contact in either model that bear over LEAST of F, by x. ValueError: unlike cells."""
     (u, v, own), (x, y, p) = patch_pressure(sam), patch_pressure(fem)
     if own.shape != p.shape or not (np.allclose(u, x) and np.allclose(v, y)):

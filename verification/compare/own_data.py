@@ -132,16 +132,10 @@ def _read_csv(path: Path) -> tuple[str, dict[str, np.ndarray]]:
         raise _refused(path, [Problem("columns", said, f"lengths in m as {wanted}")])
     (name,) = named
     known = f"{name}.csv has {', '.join(COLUMNS[name])}"
-    faults = [
-        Problem(column, "", unknown("column", [column], COLUMNS[name], known))
-        for column in frame.columns
-        if column not in COLUMNS[name]
-    ]
-    columns = {
-        column: frame[column].to_numpy()
-        for column in frame.columns
-        if column == "state" or not (faults or frame[column].isna().all())
-    }
+    strange = [column for column in frame.columns if column not in COLUMNS[name]]
+    faults = [Problem(each, "", unknown("column", [each], COLUMNS[name], known)) for each in strange]
+    empty = set(frame.columns[frame.isna().all()]) if not faults else {*frame}
+    columns = {each: frame[each].to_numpy() for each in frame if each == "state" or each not in empty}
     faults += _bad_cells(columns)
     if faults or not len(frame):
         raise _refused(path, faults or [Problem("", "", "the table has no rows")])
@@ -361,9 +355,8 @@ def _read_mapped(path: Path, radius: float) -> Tables:
         raise _refused(path, [Problem("step", str(mapping.step), f"at most {steps}")])
     mesh = mesh.cast_to_unstructured_grid()
     fields = _fields(mapping, mesh, path)
-    mesh.points = (
-        (np.asarray(mesh.points, dtype=float) - (mapping.origin or 0.0)) @ mapping.turn.T * mapping.length
-    )
+    from_origin = np.asarray(mesh.points, dtype=float) - (mapping.origin or 0.0)
+    mesh.points = from_origin @ mapping.turn.T * mapping.length
     mesh.clear_data()
     for name, (values, of_nodes) in fields.items():
         (mesh.point_data if of_nodes else mesh.cell_data)[name] = values
@@ -443,13 +436,12 @@ def _turned(values: np.ndarray, mapping: MeshMapping) -> np.ndarray:
 def _placed(mesh: UnstructuredGrid, mapping: MeshMapping, path: Path, radius: float) -> None:
     """Raise SceneError for a mesh that has no body below the contact."""
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-    um, near = 1e6, NEAR * radius
+    near, um = NEAR * radius, 1e6 * np.stack([low, high], axis=1)
     box = ", ".join(
-        f"{a} {lo * um:.4g} to {hi * um:.4g} um" for a, lo, hi in zip("xyz", low, high, strict=True)
+        f"{axis} {least:.4g} to {most:.4g} um" for axis, (least, most) in zip("xyz", um, strict=True)
     )
-    about = (
-        f"the contact is at the origin with a radius of about {radius * um:.4g} um, and the mesh is at {box}"
-    )
+    size = f"a radius of about {1e6 * radius:.4g} um"
+    about = f"the contact is at the origin with {size}, and the mesh is at {box}"
     x, y, z = np.abs(mesh.points).T
     around = ((x <= REACH * radius) & (y <= REACH * radius) & (z <= REACH * radius)).sum()
     if high[2] < ON * radius <= -low[2]:
@@ -460,11 +452,8 @@ def _placed(mesh: UnstructuredGrid, mapping: MeshMapping, path: Path, radius: fl
         key, words = "length_unit", f" with {around} nodes near the contact: the unit is another"
     else:
         return
-    given = {
-        "axes.z": mapping.axes.z,
-        "origin": mapping.origin or [0, 0, 0],
-        "length_unit": mapping.length_unit,
-    }
+    origin = mapping.origin or [0, 0, 0]
+    given = {"axes.z": mapping.axes.z, "origin": origin, "length_unit": mapping.length_unit}
     raise _refused(path, [Problem(key, spelling(given[key]), about + words)])
 
 

@@ -72,13 +72,11 @@ class Pair:
 
 def table_rows(rows: Sequence[Verdict]) -> list[tuple]:
     """The cells of compare.csv, in the order of COLUMNS."""
-    return [
-        (
-            *(each.quantity, each.value, each.expected, metric_of(each)),
-            *(each.error, each.row.tolerance, each.passed, each.row.reason),
-        )
-        for each in rows
-    ]
+    found = []
+    for each in rows:
+        values = each.quantity, each.value, each.expected, metric_of(each)
+        found.append((*values, each.error, each.row.tolerance, each.passed, each.row.reason))
+    return found
 
 
 def metric_of(verdict: Verdict) -> str:

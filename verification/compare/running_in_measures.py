@@ -13,13 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sam.scene import Scene
-from verification.reference.bonded_film import (
-    MICROSTRAIN,
-    film_pressure,
-    overall_coefficient,
-    swift,
-    tear_pressure,
-)
+from verification.reference import bonded_film
 from verification.runs.sampling import Tables, gridded, rows_of
 
 NAN = float("nan")
@@ -39,14 +33,7 @@ class History:
     @classmethod
     def of(cls, tables: Tables) -> History:
         """From the tables of a run."""
-        columns = (
-            "cycle",
-            "wear_volume_m3",
-            "friction_coefficient",
-            "sa_m",
-            "protected_fraction",
-            "p_max_Pa",
-        )
+        columns = "cycle wear_volume_m3 friction_coefficient sa_m protected_fraction p_max_Pa".split()
         return cls(*(np.asarray(tables["cycles"][name], dtype=float) for name in columns))
 
     def at(self, column: str, cycle: int) -> float:
@@ -119,9 +106,8 @@ class Scar:
 
     def coefficient(self, low: float, high: float) -> float:
         """Overall coefficient of friction, low + (high - low) W_high/W, W_high: load on failed film."""
-        return overall_coefficient(
-            np.nan_to_num(self.p), self.unprotected(low, high), low, high, cell_area=self.cell_area
-        )
+        p, bare = np.nan_to_num(self.p), self.unprotected(low, high)
+        return bonded_film.overall_coefficient(p, bare, low, high, cell_area=self.cell_area)
 
     def protected_fraction(self, low: float, high: float) -> float:
         """Share of the contact area under a whole film."""
@@ -182,9 +168,9 @@ class Limits:
         limit, law = wear.strain_limit, plasticity
         if plasticity.layer_thickness is not None:
             limit, law = wear.strain_limit_layer or limit, plasticity.layer or law
-        own = swift(law.B, law.C, law.n, limit * (law.alpha / MICROSTRAIN))
+        own = bonded_film.swift(law.B, law.C, law.n, limit * (law.alpha / bonded_film.MICROSTRAIN))
         strength = float(plasticity.depth_profile()(0.0)) * own
         film = friction.film_young, friction.film_poisson, friction.film_yield
         body = scene.body.young, scene.body.poisson
-        fails = film_pressure(friction.thinning_limit, friction.low, film, body)
-        return cls(strength, tear_pressure(strength, friction.high), fails)
+        fails = bonded_film.film_pressure(friction.thinning_limit, friction.low, film, body)
+        return cls(strength, bonded_film.tear_pressure(strength, friction.high), fails)

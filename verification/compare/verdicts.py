@@ -75,10 +75,8 @@ def breaking_radius(scene: Scene, limit: float = LIMIT) -> float:
         counter = other.young / (1.0 - other.poisson**2) / (body.young / (1.0 - body.poisson**2))
     ratio, nu = film.young / body.young, (film.poisson, body.poisson)
     try:
-        found = min(
-            breaking_thickness(ratio, *nu, counter, limit=limit, change=change)
-            for change in (pressure_change, mises_change)
-        )
+        how = [{"limit": limit, "change": change} for change in (pressure_change, mises_change)]
+        found = min(breaking_thickness(ratio, *nu, counter, **each) for each in how)
     except ValueError:  # the limit is passed by the thinnest film of the search
         return math.inf
     return film.thickness / found

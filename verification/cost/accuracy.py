@@ -16,54 +16,24 @@ from math import ceil, inf, sqrt
 import sam
 from sam.grid import Room
 from sam.scene import Result, Scene
-from verification.cost import estimates
-from verification.cost.advice import (
-    COATED,
-    DEEP,
-    ELASTIC,
-    LOAD_STEPS,
-    NEVER,
-    SLIDING,
-    YIELDING,
-    kind_of,
-    table,
-)
+from verification.cost import advice, estimates
 from verification.runs import models
 from verification.runs.files import Run
 from verification.runs.provenance import memory_bytes
 from verification.scenes import with_keys
 from verification.text.readable import with_prefix, with_time
+from verification.uncertainty import solving
 from verification.uncertainty.rule import STEP_FACTOR, bound
-from verification.uncertainty.solving import (
-    ORDERS,
-    RATIO,
-    STEP_ORDER,
-    Family,
-    Member,
-    Solve,
-    alone,
-    assessed,
-    cell_size,
-    coarser,
-    cost_of,
-    depths_of_maxima,
-    has_history,
-    in_one_step,
-    members_of_box,
-    members_of_steps,
-    solve as solve_uncertain,
-    under_resolved,
-    why_not,
-)
 
-ADVISED = {ELASTIC: "p_max_Pa", COATED: "p_max_Pa"} | dict.fromkeys((YIELDING, DEEP, SLIDING), "peeq_max")
+ADVISED = dict.fromkeys((advice.ELASTIC, advice.COATED), "p_max_Pa")
+ADVISED |= dict.fromkeys((advice.YIELDING, advice.DEEP, advice.SLIDING), "peeq_max")
 """Kind of scene -> the quantity that its table of advice is about."""
 # Of the accuracy: the errors that the table of advice is asked for. The uncertainty is 3 to 4 times an error
 # in the median (case uncertainty-study), and its parts by cells and load steps add up.
 CELLS_SHARE, STEPS_SHARE = 1 / 4.5, 1 / 9
 FEWEST_CELLS = 4.2  # in the contact radius of the coarsest of three grids: below four it has no uncertainty
 # From each of the first three grids to the next, so that rounding to whole cells leaves 1.3; elements: more.
-RATIOS = {models.SAM: 1.4, models.FEM: RATIO, models.FEM_3D: RATIO, models.FEM_LINE: RATIO}
+RATIOS = dict.fromkeys(models.MODELS, solving.RATIO) | {models.SAM: 1.4}
 FEWEST_STEPS = 6  # 4, 3 and 2 steps may agree by chance: linear hardening, 0.29 of the error
 MOST_STEPS = 1000
 MOST_CELLS = 4097
@@ -84,7 +54,7 @@ class Choice:
 def quantities_of(scene: Scene) -> tuple[str, ...]:
     """Those whose accuracy is asked for: by the scene, else the one of its table of advice."""
     own = scene.solver.accuracy_of
-    return tuple(own) if own else (ADVISED[kind_of(scene)],)
+    return tuple(own) if own else (ADVISED[advice.kind_of(scene)],)
 
 
 def first_choice(scene: Scene, model: str) -> Choice:
@@ -94,41 +64,37 @@ def first_choice(scene: Scene, model: str) -> Choice:
     """
     advised = expected(scene, model)
     for name in quantities_of(scene):
-        if reason := why_not(name, scene):
+        if reason := solving.why_not(name, scene):
             raise models.ModelError(f'solver.accuracy_of = ["{name}"]: {reason}: remove it')
-    return Choice(FEWEST_CELLS * RATIOS[model] ** 2, FEWEST_STEPS) if has_history(scene) else advised
+    return Choice(FEWEST_CELLS * RATIOS[model] ** 2, FEWEST_STEPS) if solving.has_history(scene) else advised
 
 
 def expected(scene: Scene, model: str) -> Choice:
     """What the table has for the accuracy of a scene. Raises ModelError for what was not measured."""
-    accuracy, kind = scene.solver.accuracy, kind_of(scene)
+    accuracy, kind = scene.solver.accuracy, advice.kind_of(scene)
     if kind not in ADVISED:
-        raise models.ModelError(
-            f"solver.accuracy = {accuracy:g}: remove it, no error was measured for such scenes"
-        )
+        what = "remove it, no error was measured for such scenes"
+        raise models.ModelError(f"solver.accuracy = {accuracy:g}: {what}")
     cells = _resolution(kind, model, accuracy * CELLS_SHARE, 0.5)
     if cells is None:
-        raise models.ModelError(
-            f"solver.accuracy = {accuracy:g}: larger, or another --model: {model} does not reach it"
-        )
+        what = f"larger, or another --model: {model} does not reach it"
+        raise models.ModelError(f"solver.accuracy = {accuracy:g}: {what}")
     steps = 0
-    if has_history(scene):
-        steps = ceil(_resolution(kind, LOAD_STEPS, accuracy * STEPS_SHARE, 1.0) or scene.loading.steps)
-    return Choice(
-        max(cells, FEWEST_CELLS * RATIOS[model] ** 2),
-        min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0,
-    )
+    if solving.has_history(scene):
+        steps = ceil(_resolution(kind, advice.LOAD_STEPS, accuracy * STEPS_SHARE, 1.0) or scene.loading.steps)
+    steps = min(max(steps, FEWEST_STEPS), MOST_STEPS) if steps else 0
+    return Choice(max(cells, FEWEST_CELLS * RATIOS[model] ** 2), steps)
 
 
 def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
     """The scene with these cells and load steps, asked for its uncertainty."""
-    scene = alone(scene)
+    scene = solving.alone(scene)
     found = with_keys(scene, "solver", uncertainty=True)
     if model == models.SAM:
         grid = sam.choose_grid(scene)
         a, b = sam.hertz_semi_axes(scene)
         factor = (sqrt(a * b / (grid.hx * grid.hy)) if grid.ny > 1 else a / grid.hx) / choice.cells
-        more = (min(coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
+        more = (min(solving.coarser(count, factor) + 2 * (factor < 1), MOST_CELLS) for count in grid.shape)
         cells = tuple(n if count > 1 else 1 for n, count in zip(more, grid.shape, strict=True))
         found = with_keys(found, "grid", cells=cells)
     else:
@@ -143,13 +109,12 @@ def chosen_scene(scene: Scene, model: str, choice: Choice) -> Scene:
 
 def _resolution(kind: str, method: str, error: float, power: float) -> float | None:
     """Cells or load steps to an error, of the table; beyond its smallest error with a power. None: never."""
-    own = sorted(
-        (row for row in table() if row.kind == kind and row.method == method), key=lambda row: -row.error
-    )
+    own = [row for row in advice.table() if row.kind == kind and row.method == method]
+    own.sort(key=lambda row: -row.error)
     if not own:
         return None
     row = next((row for row in own if row.error <= error), own[-1])
-    return None if row.bound == NEVER else row.resolution * max(row.error / error, 1.0) ** power
+    return None if row.bound == advice.NEVER else row.resolution * max(row.error / error, 1.0) ** power
 
 
 LONGEST = 900.0  # processor seconds that are foreseen for all solves of a scene together
@@ -171,10 +136,10 @@ class BeyondError(models.ModelError):
     """A solve that is not made; the message says what it would need, and what is allowed."""
 
 
-def solve(scene: Scene, model: str, solver: Solve | None = None) -> Result:
+def solve(scene: Scene, model: str, solver: solving.Solve | None = None) -> Result:
     """The result of a scene as it asks for it. Raises what the solver does, and ModelError of the search."""
     if scene.solver.accuracy is None:
-        return solve_uncertain(scene, model, solver)
+        return solving.solve(scene, model, solver)
     search = Search(scene, model, solver or (lambda each, _: models.solve(each, model)))
     return search.result(first_choice(scene, model))
 
@@ -215,13 +180,13 @@ class Search:
 
     scene: Scene
     model: str
-    solver: Solve
+    solver: solving.Solve
     ladder: list[float] = field(default_factory=list)
     kept: dict[str, Result] = field(default_factory=dict)
-    grids: dict[Choice, Member] = field(default_factory=dict)
+    grids: dict[Choice, solving.Member] = field(default_factory=dict)
     foreseen: float = 0.0
-    steps: Sequence[Member] = ()
-    boxes: Sequence[Member] = ()
+    steps: Sequence[solving.Member] = ()
+    boxes: Sequence[solving.Member] = ()
 
     @property
     def asked(self) -> float:
@@ -268,7 +233,7 @@ class Search:
         }
         first, *others = self.kept.values()
         named = {**best.result.discretisation, "accuracy": found}
-        return replace(best.result, discretisation=named, cost=cost_of(first, others))
+        return replace(best.result, discretisation=named, cost=solving.cost_of(first, others))
 
     def on_coarse_cells(self, count: int, most: float) -> int:
         """Solve with load steps, and in boxes, on the coarsest cells; the number of steps, which is more than
@@ -276,19 +241,19 @@ class Search:
         """
         for _ in range(ROUNDS if count else 0):
             choice = Choice(self.ladder[0], count)
-            tried = self.solved(choice, members_of_steps(self.member(choice)))
+            tried = self.solved(choice, solving.members_of_steps(self.member(choice)))
             self.steps = [*tried, *(each for each in self.steps if self.tells_more(each, tried))]
             part = max(map(self.part_of_steps, quantities_of(self.scene)))
             if count == MOST_STEPS or (part < inf and part <= most):
                 break
-            times = RATIO if part == inf else min(max(part / most, RATIO), MOST_TIMES)
+            times = solving.RATIO if part == inf else min(max(part / most, solving.RATIO), MOST_TIMES)
             count = min(ceil(count * times), MOST_STEPS)
         if self.model != models.SAM and not self.boxes:
             choice = Choice(self.ladder[0], count)
-            self.boxes = self.solved(choice, members_of_box(self.member(choice)))
+            self.boxes = self.solved(choice, solving.members_of_box(self.member(choice)))
         return count
 
-    def tells_more(self, earlier: Member, tried: Sequence[Member]) -> bool:
+    def tells_more(self, earlier: solving.Member, tried: Sequence[solving.Member]) -> bool:
         """Whether a solution with fewer load steps counts beside three others, which may agree by chance."""
         cuts = tried[0].result.cost.get("step_cuts")
         return (
@@ -308,26 +273,26 @@ class Search:
         if len(cuts) > 1 or not all(result.converged for result in results) or not all(values):
             return inf
         sizes = [each.size for each in self.steps]
-        return bound(values, sizes, STEP_ORDER, STEP_FACTOR) / abs(values[0])
+        return bound(values, sizes, solving.STEP_ORDER, STEP_FACTOR) / abs(values[0])
 
     def attempt(self, choice: Choice) -> Attempt:
         """What a grid and its companions say of it."""
-        family = Family(self.with_companions(choice), self.steps, self.boxes)
-        result = assessed(self.scene, family)
+        family = solving.Family(self.with_companions(choice), self.steps, self.boxes)
+        result = solving.assessed(self.scene, family)
         known = {name: (result.uncertainty or {}).get(name, {}) for name in quantities_of(self.scene)}
         worst = max(known, key=lambda name: inf if (u := known[name].get("relative")) is None else u)
         relative, why = known[worst].get("relative"), ""
-        if relative is None and not under_resolved(self.scene, family.cells[0].result, family):
+        if relative is None and not solving.under_resolved(self.scene, family.cells[0].result, family):
             why = known[worst].get("flag", str(result.status))
         return Attempt(choice, result, worst, relative, why)
 
-    def with_companions(self, choice: Choice) -> list[Member]:
+    def with_companions(self, choice: Choice) -> list[solving.Member]:
         """A grid and the next two coarser ones, none hardly coarser than the one before. Those of an elastic
         body are solved in one step, at the depths of its largest stresses, or at one where no stress is asked
         for.
         """
         picked = [self.solution(choice)]
-        depths = depths_of_maxima(alone(self.scene), picked[0].result)
+        depths = solving.depths_of_maxima(solving.alone(self.scene), picked[0].result)
         if depths is not None and not any(map(of_stress, quantities_of(self.scene))):
             depths = depths[:1]
         for cells in reversed(self.ladder):
@@ -369,30 +334,28 @@ class Search:
         found = 1.0
         for name in quantities_of(self.scene):
             entry, value = attempt.result.uncertainty[name], abs(attempt.result.quantities[name])
-            left = (
-                AIMED * self.asked
-                - self.part_of_steps(name) * count / max(wanted, 1)
-                - entry["u_box"] / value
-            )
-            order = min(max(entry["order_seen"] or 0.0, ORDERS[name]), STEEPEST * ORDERS[name])
+            left = AIMED * self.asked - self.part_of_steps(name) * count / max(wanted, 1)
+            left -= entry["u_box"] / value
+            formal = solving.ORDERS[name]
+            order = min(max(entry["order_seen"] or 0.0, formal), STEEPEST * formal)
             times = (entry["u_cells"] / value / left) ** (1 / order) if left > 0.0 else inf
             found = max(found, times)
         return found
 
     def member(
         self, choice: Choice, room: Room | None = None, depths: Sequence[float] | None = None
-    ) -> Member:
+    ) -> solving.Member:
         """The scene on some cells. room: of an enlarged grid; depths: of a coarser companion, if not all."""
-        scene = alone(chosen_scene(self.scene, self.model, choice))
+        scene = solving.alone(chosen_scene(self.scene, self.model, choice))
         if self.model != models.SAM:
             count = scene.fem.cells_per_radius
-            return Member(scene, f"{count} elements in the radius", count, 1 / count)
+            return solving.Member(scene, f"{count} elements in the radius", count, 1 / count)
         if depths is not None:
-            scene = in_one_step(with_keys(scene, "grid", depths=tuple(depths)))
+            scene = solving.in_one_step(with_keys(scene, "grid", depths=tuple(depths)))
         grid = sam.plan(scene).on(room or Room()).grid
-        return Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
+        return solving.Member(scene, f"{grid.nx} cells", grid.nx, solving.cell_size(grid))
 
-    def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> Member:
+    def solution(self, choice: Choice, depths: Sequence[float] | None = None) -> solving.Member:
         """The scene on some cells, solved once; depths: as those of `member`."""
         if choice not in self.grids:
             (found,) = self.solved(choice, [self.member(choice, depths=depths)])
@@ -405,7 +368,7 @@ class Search:
             self.grids[choice] = replace(found, result=result)
         return self.grids[choice]
 
-    def solved(self, choice: Choice, members: Sequence[Member]) -> list[Member]:
+    def solved(self, choice: Choice, members: Sequence[solving.Member]) -> list[solving.Member]:
         """Some scenes, each solved once. Raises BeyondError, which names the choice."""
         for member in members:
             key = member.scene.model_dump_json()
@@ -428,8 +391,6 @@ def affordable(choice: Choice, scene: Scene, model: str, before: float) -> float
         raise BeyondError(f"{choice} would be next: about {needed} of memory needed, {machine} available")
     if before + needs.time_s > LONGEST:
         own, all_of_it = with_time(needs.time_s), with_time(LONGEST)
-        raise BeyondError(
-            f"{choice} would be next: about {own} of processor time after {with_time(before)}, {all_of_it} "
-            "allowed for all solves"
-        )
+        time = f"{own} of processor time after {with_time(before)}, {all_of_it} allowed for all solves"
+        raise BeyondError(f"{choice} would be next: about {time}")
     return needs.time_s

@@ -33,15 +33,12 @@ ON_TWO_GRIDS = "sam, solver.extrapolate"
 LOAD_STEPS = "load steps"
 """Method of the rows that say how many load steps an error takes."""
 BELOW, NEVER = "<", "not reached"
-DEEPER = 4.5
-"""p0 of the elastic contact over the initial yield stress: between the two spheres of the case, which have 3
-and 6.2."""
-DEEPEST = 6.5
-"""The same, up to which the deeper one tells: beyond, no error was measured."""
-YIELDS = 1.6
-"""The same at first yield below a sphere: 1.613 (nu = 0.3)."""
-MOVING = "moving"
-"""Kind of a scene with a path, which has no rows: a press says nothing of the steps along it."""
+# p0 of the elastic contact over the initial yield stress: DEEPER is between the two spheres of the case, with
+# 3 and 6.2; beyond DEEPEST no error was measured; YIELDS: first yield below a sphere, 1.613 (nu = 0.3).
+DEEPER, DEEPEST, YIELDS = 4.5, 6.5, 1.6
+MOVING = (
+    "moving"  # kind of a scene with a path, which has no rows: a press says nothing of the steps along it
+)
 OF_MOVING = (
     "none, as the cost of an error was not measured for a load that moves; below a sphere at p0 = 4 yield "
     "stresses of Swift steel steps of a quarter of the contact radius leave 1 % of error in the depth of the "
@@ -84,12 +81,11 @@ def table() -> list[AdviceRow]:
 
 def read_rows(text: str) -> list[AdviceRow]:
     """The rows of a table of advice."""
-    return [
-        AdviceRow(
-            **row | {n: float(row[n] or "nan") for n in _NUMBERS} | {"load_steps": int(row["load_steps"])}
-        )
-        for row in csv.DictReader(text.splitlines())
-    ]
+    rows = []
+    for row in csv.DictReader(text.splitlines()):
+        numbers = {name: float(row[name] or "nan") for name in _NUMBERS}
+        rows.append(AdviceRow(**row | numbers | {"load_steps": int(row["load_steps"])}))
+    return rows
 
 
 def texts_of(row: AdviceRow) -> list[str]:

@@ -37,11 +37,8 @@ def hertz_of(scene: Scene) -> dict[str, float]:
     exact = EllipticContact(force, *other.radii, modulus)
     a, b = exact.semi_axes
     found = {"approach_m": exact.approach} if loading.approach is None else {"force_N": force}
-    return found | {
-        "contact_area_m2": pi * a * b,
-        "contact_radius_m": sqrt(a * b),
-        "p_max_Pa": exact.peak_pressure,
-    }
+    area = {"contact_area_m2": pi * a * b, "contact_radius_m": sqrt(a * b)}
+    return found | area | {"p_max_Pa": exact.peak_pressure}
 
 
 def expected_contact(scene: Scene) -> dict[str, Any]:
@@ -58,9 +55,8 @@ def expected_contact(scene: Scene) -> dict[str, Any]:
         stress = estimates.MISES * estimates.peak_pressure(scene)
         radius = with_prefix(scene.loading.radius, "m")
         found = {"mises_Pa": stress, **beyond(stress)}
-        return found | {
-            "words": f"misfit sphere: radius {radius}, no contact{_over(found, 'largest stress')}"
-        }
+        words = f"misfit sphere: radius {radius}, no contact{_over(found, 'largest stress')}"
+        return found | {"words": words}
     if other is not None and other.shape == "flat":
         return _of_plane(scene, beyond)
     from sam import expected_force, hertz_semi_axes

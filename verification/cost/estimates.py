@@ -273,9 +273,8 @@ def _back_hardening(scene: Scene, depths: np.ndarray) -> float:
     if (back := strength.back_at(z)) is None:
         return 0.0
     modulus, recovery = back
-    path = np.divide(
-        -np.expm1(-0.01 * recovery), recovery, out=np.full_like(recovery, 0.01), where=recovery > 0
-    )
+    path, falls = np.full_like(recovery, 0.01), recovery > 0
+    np.divide(-np.expm1(-0.01 * recovery), recovery, out=path, where=falls)
     return float((modulus * path).sum() / over_depth.min())
 
 
@@ -354,11 +353,8 @@ def _path_cells(scene: Scene, grid: CellGrid) -> tuple[int, int]:
     path = scene.loading.path
     if path is None:
         return 0, 0
-    along_x, along_y = (
-        ceil(abs(end - start) / h)
-        for start, end, h in zip(path.start, path.end, (grid.hx, grid.hy), strict=True)
-    )
-    return along_x, along_y
+    (x0, y0), (x1, y1) = path.start, path.end
+    return ceil(abs(x1 - x0) / grid.hx), ceil(abs(y1 - y0) / grid.hy)
 
 
 @lru_cache(maxsize=64)
@@ -368,10 +364,8 @@ def _elastic_zone(ratio: float, poisson: float) -> tuple[float, float]:
     from verification.reference.stress import von_mises
 
     at = np.linspace(0.0, ZONE, ZONE_POINTS)
-    excess = (
-        von_mises(subsurface_stress(at[:, None], 0.0, at[None, :], 1.0, contact_radius=1.0, nu=poisson))
-        - 1 / ratio
-    )
+    stress = subsurface_stress(at[:, None], 0.0, at[None, :], 1.0, contact_radius=1.0, nu=poisson)
+    excess = von_mises(stress) - 1 / ratio
     return _farthest(at, excess), _farthest(at, excess.T)
 
 
@@ -388,31 +382,22 @@ def _sam(scene: Scene, plan: Any) -> Counted:
     cells, depths, loads = grid.nx * grid.ny, len(grid.depths), 1 + plan.slip.slides  # pressure and traction
     sizes = {each.stage: each.size for each in plan.stages if each.runs}
     coefficients = sizes.get("stresses at the output depths", {}).get("coefficients", 0)  # none without load
-    stretches = (
-        len({load.stretch for load in plan.schedule.peaks}) if plan.plasticity is None else 1
-    )  # that an elastic body meets
-    contacts = stretches * steps * cells * log2(cells)
-    with_coefficients, with_stresses = plan.held_depths
-    block = 8 * coefficients * (with_coefficients / depths)
+    met = {load.stretch for load in plan.schedule.peaks}  # by an elastic body
+    contacts = (len(met) if plan.plasticity is None else 1) * steps * cells * log2(cells)
+    block = 8 * coefficients * (plan.held_depths[0] / depths)  # of those with coefficients
     memory = {"surface": 8.0 * cells, "patch" if rough else "stresses": block}
     if rough and steps:
-        memory["patch stresses"] = 48.0 * cells * with_stresses
-    work = {
-        "solve": 1.0,
-        "patch contact" if rough else "contact": contacts,
-        "patch" if rough else "stresses": loads * coefficients,
-    }
+        memory["patch stresses"] = 48.0 * cells * plan.held_depths[1]  # of those with stresses
+    of_grid = {"contact": contacts, "stresses": loads * coefficients}
+    work = {"solve": 1.0} | ({"patch contact": contacts, "patch": loads * coefficients} if rough else of_grid)
     if plan.period is not None:
         memory["patch"] = 48.0 * cells
         memory["patch stresses"] = PERIODIC_MEMORY * memory.get("patch stresses", 0.0)
         work |= {"solve": 1.0 + PERIODIC_SOLVES, "patch": PERIODIC_WORK * work["patch"]}
     if plan.coated is not None and steps:  # and the same contact without it
         memory["layered"] = block
-        tables, layered = loads * (1 + depths), loads * (cells + coefficients)
-        work |= {name: 2 * number for name, number in work.items() if name != "solve"} | {
-            "tables": tables,
-            "layered": layered,
-        }
+        work |= {name: 2 * number for name, number in work.items() if name != "solve"}
+        work |= {"tables": loads * (1 + depths), "layered": loads * (cells + coefficients)}
     if plan.plasticity is None or not steps:
         return Counted(memory, work)
     from sam.plasticity import held
@@ -480,11 +465,8 @@ def _axisymmetric(scene: Scene, plan: Any) -> Counted:
     if flows(scene):
         iterations = steps * scene.loading.cycles * FACTORS * newton_iterations(scene)
         factors, work["points"] = 1 + iterations, again * iterations * points
-    memory = {
-        "unknowns": 8.0 * unknowns,
-        "steps": 8.0 * unknowns * (steps > 1),
-        "points": 8.0 * points * flows(scene),
-    }
+    memory = {"unknowns": 8.0 * unknowns, "steps": 8.0 * unknowns * (steps > 1)}
+    memory["points"] = 8.0 * points * flows(scene)
     return Counted(memory, work | {"factors": again * factor * factors})
 
 
@@ -494,10 +476,8 @@ def _spatial(scene: Scene, plan: Any) -> Counted:
     if flows(scene):
         iterations *= scene.loading.cycles
     iterations *= 1 + (scene.body.coating is not None)
-    return Counted(
-        {"unknowns": 8.0 * unknowns, "states": _held_states(scene, plan)},
-        {"solve": 1.0, "multigrid": unknowns**MULTIGRID * steps_of(scene) * iterations},
-    )
+    work = {"solve": 1.0, "multigrid": unknowns**MULTIGRID * steps_of(scene) * iterations}
+    return Counted({"unknowns": 8.0 * unknowns, "states": _held_states(scene, plan)}, work)
 
 
 def _line(scene: Scene, plan: Any) -> Counted:
@@ -509,9 +489,8 @@ def _line(scene: Scene, plan: Any) -> Counted:
     states = _held_states(scene, plan)
     if flows(scene) and not scene.moves:
         states = 8.0 * steps * scene.loading.cycles * (plan.unknowns + 7 * plan.points)
-    return Counted(
-        {"unknowns": 8.0 * plan.unknowns, "states": states}, {"solve": 1.0, "solves": solves * plan.unknowns}
-    )
+    work = {"solve": 1.0, "solves": solves * plan.unknowns}
+    return Counted({"unknowns": 8.0 * plan.unknowns, "states": states}, work)
 
 
 def _held_states(scene: Scene, plan: Any) -> float:

@@ -144,10 +144,8 @@ def cycles(counts: Iterable[int], *, family: str = "cycles", renewed: bool = Fal
     scene = _patch(with_keys(scene_of("running-in-bulk"), "loading", steps=3, unload_steps=3), 32)
     if renewed:
         scene = with_keys(scene, "counterbody", surface=CounterSurface(**PLANE))
-    return [
-        Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, with_keys(scene, "loading", cycles=n), n)
-        for n in counts
-    ]
+    cycled = {n: with_keys(scene, "loading", cycles=n) for n in counts}
+    return [Rung(family, f"{n} cycle{'s' * (n > 1)}", models.SAM, each, n) for n, each in cycled.items()]
 
 
 def elements(
@@ -161,15 +159,12 @@ def elements(
 
 ONE_STEP = {"steps": 1, "unload": False}
 LOADED = {"steps": 5, "unload": False}
+CONTACTS, PLASTIC = (65, 129, 257, 513, 1025, 2049), f"{models.FEM}, plastic"
 YIELDING = "plastic-swift-rigid"
 """Swift steel at four times the load of first yield's pressure."""
 FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
     "contact": lambda: square(
-        "elastic contact",
-        (65, 129, 257, 513, 1025, 2049),
-        "hertz-sphere",
-        grid={"depths": (0.0,)},
-        **ONE_STEP,
+        "elastic contact", CONTACTS, "hertz-sphere", grid={"depths": (0.0,)}, **ONE_STEP
     ),
     "stresses": lambda: square("elastic, all depths", (65, 129, 257, 513), "hertz-sphere", **ONE_STEP),
     "cycles": lambda: cycles((1, 2, 4, 8, 16)),
@@ -181,9 +176,7 @@ FAMILIES: Mapping[str, Callable[[], list[Rung]]] = {
     "rough, coated": lambda: square("rough, coated", (64, 128), "rough-patch"),
     "plastic": lambda: square("plastic", (33, 45, 63, 89), YIELDING, **LOADED),
     "running-in": lambda: running_in((32, 48, 64)),
-    "axisymmetric, plastic": lambda: elements(
-        f"{models.FEM}, plastic", models.FEM, (8, 16, 32), YIELDING, steps=5
-    ),
+    "axisymmetric, plastic": lambda: elements(PLASTIC, models.FEM, (8, 16, 32), YIELDING, steps=5),
     "axisymmetric, steps": lambda: elements(f"{models.FEM}, 4 steps", models.FEM, (32, 64), steps=4),
 }
 """The ladders of the case `growth`, all of which are predicted, and the factors fitted to them."""
@@ -224,12 +217,9 @@ def factors(
         counts = [estimates.counted(rung.scene, model) for rung in rungs if rung.model == model]
         own = [row for row in taken if row["model"] == model]
         known = {name: 1.0 for name in STORED if any(name in count.bytes for count in counts)}
-        memory[model] = fitted(
-            [count.bytes for count in counts], [row["memory"] for row in own], MEMORY_MATTERS, known
-        )
-        seconds[model] = fitted(
-            [count.work for count in counts], [row["cpu-s"] for row in own], TIME_MATTERS, {}
-        )
+        bytes_, taken_s = [row["memory"] for row in own], [row["cpu-s"] for row in own]
+        memory[model] = fitted([count.bytes for count in counts], bytes_, MEMORY_MATTERS, known)
+        seconds[model] = fitted([count.work for count in counts], taken_s, TIME_MATTERS, {})
     return memory, seconds
 
 

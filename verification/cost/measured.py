@@ -16,13 +16,8 @@ from sam.scene import Result, Scene
 from verification.runs import models
 from verification.runs.threads import computing_with
 
-LIBRARIES = (
-    "scipy.fft",
-    "scipy.interpolate",
-    "scipy.ndimage",
-    "scipy.optimize",
-    "scipy.sparse.linalg",
-    "scipy.special",
+LIBRARIES = tuple(
+    f"scipy.{name}" for name in "fft interpolate ndimage optimize sparse.linalg special".split()
 )
 KERNEL_SIDE, KERNEL_REPEATS = 384, 24  # of the calibration: about 0.2 s on a processor of 2020
 
@@ -39,9 +34,8 @@ def solve_forked(scene: Scene, model: str) -> Result:
     `solve_alone`, for times only, as its memory is not its own.
     """
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(
-        [name for each in sorted(set(models.MODELS.values())) for name in parts(each)]
-    )
+    places = sorted(set(models.MODELS.values()))
+    context.set_forkserver_preload([name for place in places for name in parts(place)])
     with computing_with(1), ProcessPoolExecutor(1, mp_context=context) as executor:
         return executor.submit(models.solve, scene, model).result()
 

@@ -15,15 +15,7 @@ from verification.cost import estimates
 from verification.cost.accuracy import chosen_scene, expected, first_choice, quantities_of
 from verification.cost.advice import LOAD_STEPS, ON_TWO_GRIDS, advice_of, kind_of, table
 from verification.cost.contact import expected_contact
-from verification.runs import models
-from verification.runs.model_range import (
-    CYLINDER,
-    in_a_sentence,
-    model_range,
-    off_in_words,
-    outside_in_words,
-    range_lines,
-)
+from verification.runs import model_range, models
 from verification.runs.provenance import memory_bytes
 from verification.text.console import table_lines
 from verification.text.readable import with_prefix, with_time
@@ -149,7 +141,7 @@ def plan(scene: Scene, model: str | None = None) -> Plan:
     """The plan of every model for its contact; model: of the attributes, by default the first usable."""
     entries = [_model(scene, name) for name in models.models_for(scene)]
     usable = [entry["model"] for entry in entries if entry["available"]]
-    advice, of_model = advice_of(scene, usable), model_range(scene)
+    advice, of_model = advice_of(scene, usable), model_range.model_range(scene)
     contact = expected_contact(scene)
     content = {
         "title": scene.title,
@@ -186,9 +178,8 @@ def _resolution(scene: Scene, model: str, made: Any) -> dict[str, Any]:
 
     named = {row.method: row.quantity for row in of_kind}
     own = {"error": left(method, cells), "steps_error": left(LOAD_STEPS, scene.loading.steps)}
-    return (
-        found | {"cells_in_radius": cells} | ({"quantity": named[method], **own} if method in named else {})
-    )
+    own = {"quantity": named[method], **own} if method in named else {}
+    return found | {"cells_in_radius": cells} | own
 
 
 def _resolved(entries: Sequence[Mapping[str, Any]]) -> str:
@@ -236,11 +227,12 @@ def _off(found: Mapping[str, Any] | None, hertz: float | None) -> list[str]:
     """That the contact is outside of the model, and by how much that is off; hertz: elastic a/R."""
     if found is None:
         return []
-    outside = [outside_in_words(found["a_over_R"])] if found["outside"] else []
-    like = f"{'as of a sphere at ' * (found['like'] not in ('', CYLINDER))}a/R = {found['a_over_R']:.2g}"
+    outside = [model_range.outside_in_words(found["a_over_R"])] if found["outside"] else []
+    sphere = found["like"] not in ("", model_range.CYLINDER)
+    like = f"{'as of a sphere at ' * sphere}a/R = {found['a_over_R']:.2g}"
     like += " with yielding" * bool(hertz and found["a_over_R"] > 1.01 * hertz)
-    off = off_in_words(found)
-    return [*outside, *([in_a_sentence(off, like)] if off else [])]
+    off = model_range.off_in_words(found)
+    return [*outside, *([model_range.in_a_sentence(off, like)] if off else [])]
 
 
 def _warnings(scene: Scene, entries: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -324,10 +316,8 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
     needs = estimates.estimate(scene, model, made)
     if available and needs.memory_bytes > available:
         needed, there = (with_prefix(number, "B") for number in (needs.memory_bytes, available))
-        raise models.ModelError(
-            f"model {model}: about {needed} of memory needed, {there} available: {_smaller(scene, model)}"
-            + _fitting(scene, model, available)
-        )
+        words = _smaller(scene, model) + _fitting(scene, model, available)
+        raise models.ModelError(f"model {model}: about {needed} of memory needed, {there} available: {words}")
     if anyway:
         return made
     seconds = needs.time_s + (_uncertainty(scene, model)[1] if scene.solver.uncertainty else 0.0)
@@ -342,9 +332,8 @@ def check_needs(scene: Scene, model: str, available: float | None = None, *, any
 def _fewer(scene: Scene) -> str:
     """Load steps and cycles that can be fewer, with the numbers that they have."""
     given = {"steps": scene.loading.steps, "cycles": scene.loading.cycles}
-    return ", " * any(count > 1 for count in given.values()) + " or ".join(
-        f"loading.{key} = {count}" for key, count in given.items() if count > 1
-    )
+    words = " or ".join(f"loading.{key} = {count}" for key, count in given.items() if count > 1)
+    return f", {words}" if words else ""
 
 
 def _fitting(scene: Scene, model: str, available: float) -> str:
@@ -366,10 +355,8 @@ def _smaller(scene: Scene, model: str) -> str:
     """What to change, with the value that it has."""
     surface = scene.patch_surface
     if surface is not None and surface.kind == "file" and surface.resample is None:
-        cells = list(surface.patch()[0])
-        return (
-            f"give a smaller {surface.table}.crop, as grid.cells = {cells} are those of {surface.table}.path"
-        )
+        cells, name = list(surface.patch()[0]), surface.table
+        return f"give a smaller {name}.crop, as grid.cells = {cells} are those of {name}.path"
     if model != models.SAM and surface is not None:
         return f"lower grid.cells or fem.box = {scene.fem.box:g}"
     if model != models.SAM:
@@ -397,7 +384,7 @@ def _model_lines(content: Mapping[str, Any]) -> list[str]:
             size = ", ".join(_sized(name, value) for name, value in stage["size"].items())
             mark = "computed" if stage["runs"] else "left out"
             lines.append(f"  {mark}  {stage['stage']}: {stage['reason']}" + (f" ({size})" if size else ""))
-    off = [] if content["model_range"] is None else range_lines(content["model_range"])
+    off = [] if content["model_range"] is None else model_range.range_lines(content["model_range"])
     return [*lines, "", *off, content["note"]]
 
 

@@ -211,8 +211,10 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str) -> Definit
         for k, (test, frame) in enumerate(zip(fit.tests, frames, strict=True))
     ]
     model = fit.model or _cheapest(made[0].scene)
-    ours = [each for each in unknown if each.name in OF_THE_MACHINE]
-    ours = [part for each in ours for part in _of_tests(each, made)]
+    curves, ours = [test.name for test in made if test.kind == "curve"], list[Parameter]()
+    for each in unknown:
+        names = [f"{ZERO} of {name}" for name in curves] if each.name == ZERO else [each.name]
+        ours += [replace(each, name=name) for name in names if each.name in OF_THE_MACHINE]
     theirs = tuple(each for each in unknown if each.name not in OF_THE_MACHINE)
     if not theirs:
         raise SceneError([Problem("unknown", "no key of the scene", 'such as "body.plasticity.B"')], source)
@@ -221,17 +223,9 @@ def _made(table: Mapping[str, Any], folder: Path | None, source: str) -> Definit
             models.check(test.at({each.name: getattr(each, end) for each in theirs}), model)
         except models.ModelError as error:
             words = f"narrower bounds, or tests within the range of the model: {error}"
-            raise SceneError(
-                [Problem("unknown", f"the {end} values, with {test.name}", words)], source
-            ) from None
+            wrong = Problem("unknown", f"the {end} values, with {test.name}", words)
+            raise SceneError([wrong], source) from None
     return Definition(fit.title, model, tuple(made), theirs, tuple(ours))
-
-
-def _of_tests(parameter: Parameter, tests: list[Test]) -> list[Parameter]:
-    """A zero of each curve; of the compliance the parameter itself."""
-    if parameter.name == COMPLIANCE:
-        return [parameter]
-    return [replace(parameter, name=f"{ZERO} of {test.name}") for test in tests if test.kind == "curve"]
 
 
 def _scene(given: Any, folder: Path | None, source: str) -> Scene:

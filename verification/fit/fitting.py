@@ -44,10 +44,8 @@ from verification.fit.solves import Answer, Answers, FitError
 CONFIDENCE = 0.9
 QUANTILE = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 ENDS = ("low", "start", "high")
-STEP, LEAST = (
-    0.1,
-    0.02,
-)  # of the width of the bounds for a difference and an update: less shows the moving mesh
+# of the width of the bounds for a difference and an update: less shows the moving mesh
+STEP, LEAST = 0.1, 0.02
 FIRST, LATER = 6, 3  # evaluations of all tests on the coarse grid, and in a round on the fine one
 ROUNDS = 3  # on the fine grid, at most; after each the noise is estimated
 SETTLED = 0.3  # standard deviations by which the parameters may still move in the last round
@@ -137,14 +135,10 @@ class Fitted:
         found = []
         for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
             largest = vector[np.abs(vector).argmax()]
-            width, named = (
-                QUANTILE * np.sqrt(value) * abs(largest),
-                zip(self.parameters, vector, strict=False),
-            )
+            width, weights = QUANTILE * np.sqrt(value) * abs(largest), (vector / largest).tolist()
             if width > DETERMINED:
-                found.append(
-                    (float(width), {p.name: float(v / largest) for p, v in named if abs(v / largest) > NAMED})
-                )
+                named = zip(self.parameters, weights, strict=False)
+                found.append((float(width), {p.name: weight for p, weight in named if abs(weight) > NAMED}))
         return sorted(found, key=lambda each: -each[0])
 
     def scene(self, values: Variables | None = None) -> Scene:
@@ -242,16 +236,9 @@ class _Search:
         inside = np.clip(x, np.nextafter(bounds[0], np.inf), np.nextafter(bounds[1], -np.inf))
         shift = inside - 1.0  # the trust region begins with the norm of the variables
         how: dict[str, Any] = {"bounds": tuple(end - shift for end in bounds), "max_nfev": most}
-        how |= {
-            "method": "dogbox",
-            "x_scale": "jac",
-            "ftol": 1e-3 if self.fine else 3e-3,
-            "xtol": 1e-6,
-            "gtol": 1e-6,
-        }
-        answer = least_squares(
-            lambda at: self.residuals(at + shift), inside - shift, lambda at: updated(at + shift), **how
-        )
+        how |= {"method": "dogbox", "x_scale": "jac", "xtol": 1e-6, "gtol": 1e-6}
+        how |= {"ftol": 1e-3 if self.fine else 3e-3, "jac": lambda at: updated(at + shift)}
+        answer = least_squares(lambda at: self.residuals(at + shift), inside - shift, **how)
         return answer.x + shift, updated(answer.x + shift), answer.status > 0
 
     def result(self, x: np.ndarray, jacobian: np.ndarray, settled: bool, *, ahead: bool) -> Fitted:

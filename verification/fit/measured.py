@@ -116,27 +116,16 @@ def faults(points: Points, kind: str, radius: float, elastic: float) -> list[Pro
         return [Problem("depth", f"at most {deepest:.3g} m", words)]
     up = ~points.unloading
     force, depth, back = points.x[up], points.depth[up], int(points.unloading.sum())
-    first = float(np.interp(0.0, force[:FEWEST], depth[:FEWEST]))
+    first = np.interp(0.0, force[:FEWEST], depth[:FEWEST])
+    fallen = (np.maximum.accumulate(force) - force).max()
+    touch = f"points from the first touch on, some below {FOOT:g} of the largest force"
+    order = "one loading and one unloading, in the order in which they were measured"
+    near = "near zero there: count it from the first touch"
     rules = (
         (up.sum() < FEWEST, "loading", f"{up.sum()} points", f"at least {FEWEST} up to the largest force"),
-        (
-            force.min() > FOOT * largest,
-            "force",
-            f"from {force.min():.3g} N",
-            f"points from the first touch on, some below {FOOT:g} of the largest force",
-        ),
-        (
-            (np.maximum.accumulate(force) - force).max() > FALLING * largest,
-            "force",
-            "falls before its peak",
-            "one loading and one unloading, in the order in which they were measured",
-        ),
-        (
-            abs(first) > FOOT * deepest,
-            "depth",
-            f"{first:.3g} m where the force is the least",
-            "near zero there: count it from the first touch",
-        ),
+        (force.min() > FOOT * largest, "force", f"from {force.min():.3g} N", touch),
+        (fallen > FALLING * largest, "force", "falls before its peak", order),
+        (abs(first) > FOOT * deepest, "depth", f"{first:.3g} m where the force is the least", near),
         (0 < back < FEWEST, "unloading", f"{back} points", f"at least {FEWEST}, or none"),
     )
     return [Problem(*problem) for wrong, *problem in rules if wrong]

@@ -60,9 +60,11 @@ class Solves:
         scene = test.at(values) if fine else coarser(test.at(values))
         back = bool(test.points.unloading.any())
         result = self._once(_again(scene) if back and self.twice else scene)
-        if back and not self.twice and not _unloads(result):
-            self.twice = True
-            result = self._once(_again(scene))
+        if back and not self.twice:
+            force = np.asarray(result.tables["history"]["force_N"], dtype=float)
+            if not (force[int(np.argmax(force)) + 1 :] > 0.0).any():  # none after the peak before the last, 0
+                self.twice = True
+                result = self._once(_again(scene))
         radius, found = scene.counterbody.radius if scene.counterbody else None, result.quantities
         ratio = (found["contact_radius_m"] or 0.0) / (radius or np.inf)
         return Answer(_depths(test, result), _off(test, result), float(found["peeq_max"] or 0.0), ratio)
@@ -98,12 +100,6 @@ def coarser(scene: Scene) -> Scene:
 def _again(scene: Scene) -> Scene:
     """Loaded a second time: where unloading is elastic that is its way back."""
     return scene.model_copy(update={"loading": scene.loading.model_copy(update={"cycles": 2})})
-
-
-def _unloads(result: Result) -> bool:
-    """Whether there are forces after the peak before the last, which is zero."""
-    force = np.asarray(result.tables["history"]["force_N"], dtype=float)
-    return bool((force[int(np.argmax(force)) + 1 :] > 0.0).any())
 
 
 def _depths(test: Test, result: Result) -> np.ndarray:

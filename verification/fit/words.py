@@ -22,6 +22,7 @@ UPPER = 0.5  # share of the largest force down to which unloading is fitted by a
 AT_BOUND = 1e-3  # of the width of the bounds
 RANGE = 0.2  # a/R beyond which the bias by small strains is said before all else
 TABOR_STRAIN, TABOR_FACTOR = 0.2, 3.0
+CLASSICAL = ("name", "value", "where_it_is_wrong")
 PARAMETERS = ("parameter", "value", "low", "high", "u_noise", "u_numerical", "bias_of_model", "unit")
 
 
@@ -164,9 +165,7 @@ def content(fitted: Fitted, solves: int) -> dict[str, Any]:
             }
             for test, sigma, residuals in zip(definition.tests, fitted.sigma, fitted.residuals, strict=True)
         ],
-        "classical": [
-            dict(zip(("name", "value", "where_it_is_wrong"), row, strict=True)) for row in classical(fitted)
-        ],
+        "classical": [dict(zip(CLASSICAL, row, strict=True)) for row in classical(fitted)],
         "further_tests": [vars(each) for each in fitted.further],
         "largest_strain": fitted.strain,
         "a_over_R": fitted.ratio,

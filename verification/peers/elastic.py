@@ -8,19 +8,8 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Progress
-from verification.peers import problems
-from verification.peers.running import (
-    ASPHER,
-    CONTACT_MECHANICS,
-    SAM,
-    TAMAAS,
-    Job,
-    Measurement,
-    cells_in_words,
-    measure,
-    rows_of,
-    run,
-)
+from verification.peers import problems, running
+from verification.peers.running import ASPHER, CONTACT_MECHANICS, SAM, TAMAAS, Job, Measurement
 
 SIZES = (64, 96, 128, 192, 256, 512)  # the error that is asked for lies between 192 and 256
 ROUGH_SIZES = (256, 512, 1024)
@@ -40,19 +29,11 @@ ROUGH_LADDERS: Mapping[str, Sequence[Mapping[str, Any]]] = {
     SAM: [{"tolerance": tolerance} for tolerance in (3e-3, 1e-3, 3e-4, 1e-4)],
     TAMAAS: [{"tolerance": tolerance} for tolerance in (3e-4, 1e-4, 3e-5, 1e-5)],
     CONTACT_MECHANICS: [{"tolerance": tolerance} for tolerance in (1e-2, 1e-4, 1e-5)],
-    ASPHER: [
-        {"tolerance": tolerance, "backend": "fft", "single_precision": True}
-        for tolerance in (1e-3, 1e-4, 1e-5)
-    ],
+    ASPHER: [{"tolerance": each, "backend": "fft", "single_precision": True} for each in (1e-3, 1e-4, 1e-5)],
 }
 """Program -> settings, loose to tight: on each grid the first that reaches ROUGH_ERROR is compared."""
-MISSED = {
-    (CONTACT_MECHANICS, 1024): 2,
-    (TAMAAS, 512): 2,
-    (TAMAAS, 1024): 4,
-    (ASPHER, 512): 2,
-    (ASPHER, 1024): 2,
-}
+MISSED = dict.fromkeys([(CONTACT_MECHANICS, 1024), (TAMAAS, 512), (ASPHER, 512), (ASPHER, 1024)], 2)
+MISSED[TAMAAS, 1024] = 4
 """Program and grid -> how many of these are left out: they end above the error, by commit a82b4b2, with which
 Tamaas took 111 s on the finest grid, 34 times SAM's time.
 """
@@ -69,11 +50,10 @@ HERTZ_ERROR = 5e-6
 def solution(problem: str, n: int, python: Path, program: str = SAM, **settings: Any) -> np.ndarray:
     """The pressure on these cells with a tight tolerance. RuntimeError when there is none."""
     measurement = Measurement(Job(problem, n, {**TIGHT[program], **settings}))
-    run(program, measurement, python)
+    running.run(program, measurement, python)
     if measurement.failure or "pressure" not in measurement.fields:
-        raise RuntimeError(
-            f"{program} on {n} x {n} cells of {problem}: {measurement.failure or 'no pressure'}"
-        )
+        why = measurement.failure or "no pressure"
+        raise RuntimeError(f"{program} on {n} x {n} cells of {problem}: {why}")
     return measurement.fields["pressure"]
 
 
@@ -113,18 +93,18 @@ def hertz(
         ]
         for program in pythons
     }
-    found, kernel = measure(jobs, pythons, rounds, progress)
+    found, kernel = running.measure(jobs, pythons, rounds, progress)
     least: dict[tuple[int, float], float] = {}
 
     def error(each: Measurement) -> float:
         n, side = each.job.cells, each.job.settings.get("side", problems.SIDE)
         if (n, side) not in least:
             tight = Measurement(Job(problems.HERTZ, n, {**TIGHT[SAM], "side": side}))
-            run(SAM, tight, pythons[SAM])
+            running.run(SAM, tight, pythons[SAM])
             least[n, side] = hertz_error(tight.fields["pressure"], 0.0)
         return hertz_error(each.fields["pressure"], least[n, side])
 
-    return rows_of(problems.HERTZ, found, error), kernel
+    return running.rows_of(problems.HERTZ, found, error), kernel
 
 
 def rough(
@@ -141,23 +121,23 @@ def rough(
     def error(each: Measurement) -> float:
         return distance(each.fields["pressure"], tight[each.job.cells])
 
+    def reaches(each: Measurement) -> bool:
+        return error(each) <= ROUGH_ERROR
+
     while open_:
         jobs: dict[str, list[Job]] = {}
         for (program, n), place in open_.items():
             settings = ROUGH_LADDERS[program][place]
-            jobs.setdefault(program, []).append(
-                Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}")
-            )
-        found, seconds = measure(
-            jobs, pythons, rounds, progress, reaches=lambda each: error(each) <= ROUGH_ERROR
-        )
+            job = Job(problems.ROUGH, n, settings, f"{settings['tolerance']:g}")
+            jobs.setdefault(program, []).append(job)
+        found, seconds = running.measure(jobs, pythons, rounds, progress, reaches=reaches)
         kernel += seconds
-        fresh = rows_of(problems.ROUGH, found, error)
+        fresh = running.rows_of(problems.ROUGH, found, error)
         rows += fresh
         missed = {(row["model"], row["cells"]) for row in fresh if not row["error"] <= ROUGH_ERROR}
         open_ = {
             (program, n): place + 1
             for (program, n), place in open_.items()
-            if (program, cells_in_words(n)) in missed and place + 1 < len(ROUGH_LADDERS[program])
+            if (program, running.cells_in_words(n)) in missed and place + 1 < len(ROUGH_LADDERS[program])
         }
     return rows, kernel

@@ -36,10 +36,7 @@ at all."""
 
 
 def step(
-    pythons: Mapping[str, Path],
-    rounds: int,
-    references: Mapping[str, StoredReference],
-    progress: Progress,
+    pythons: Mapping[str, Path], rounds: int, references: Mapping[str, StoredReference], progress: Progress
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """Rows of SAM, in the box of Tamaas and on its own grid, and of Tamaas, and the seconds of the kernel;
     references: program -> what it tends to.
@@ -111,9 +108,8 @@ def main() -> None:
         run(TAMAAS, measurement, interpreter(), allowance=7200)
         if not measurement.solved:
             raise SystemExit(f"{cells}: {measurement.failure or 'not converged'}")
-        fields = {
-            name: [float(f"{value:.7g}") for value in values] for name, values in measurement.fields.items()
-        }
+        parts = measurement.fields.items()
+        fields = {name: [float(f"{value:.7g}") for value in values] for name, values in parts}
         grids.append({"cells": cells, "seconds": round(measurement.seconds, 1), **fields})
         print(cells, measurement.seconds, measurement.record, flush=True)
     content = {"settings": TIGHT, "versions": measurement.record["versions"], "grids": grids}

@@ -51,18 +51,12 @@ class Elastic:
 def elastic(name: str, n: int, side: float = SIDE) -> Elastic:
     """HERTZ on n x n cells over `side` contact radii, or ROUGH on n x n cells."""
     if name == HERTZ:
-        x = hertz_centres(n, side)
+        # cell centres with the apex on one of them, on grids of even n too: each program has its best case
+        x = (np.arange(n) - n // 2) * (side * A / n)
         return Elastic((x[:, None] ** 2 + x[None, :] ** 2) / 2, side * A, FORCE)
     if name == ROUGH:
         return Elastic(-RMS * rough_heights(n), 1.0, MEAN_PRESSURE)
     raise ValueError(f"no elastic problem {name!r}")
-
-
-def hertz_centres(n: int, side: float = SIDE) -> np.ndarray:
-    """Cell centres with the apex on one of them, on grids of even n too: each program then has its best
-    case.
-    """
-    return (np.arange(n) - n // 2) * (side * A / n)
 
 
 def rough_heights(n: int) -> np.ndarray:

@@ -83,15 +83,12 @@ def interpreter() -> Path:
     """The Python of the peers, from SAMFEM_PEERS. PeersError when it is not set or cannot be run."""
     place = os.environ.get(VARIABLE, "")
     if not place:
-        raise PeersError(
-            f"{VARIABLE} is not set: it names the Python of an environment with the peers; "
-            "`make peers` makes one and sets it"
-        )
+        words = "it names the Python of an environment with the peers; `make peers` makes one and sets it"
+        raise PeersError(f"{VARIABLE} is not set: {words}")
     path = Path(place).absolute()
     if not path.is_file() or not os.access(path, os.X_OK):
-        raise PeersError(
-            f"{VARIABLE} = {place!r}: no such program; `make peers` makes the environment and sets it"
-        )
+        words = "no such program; `make peers` makes the environment and sets it"
+        raise PeersError(f"{VARIABLE} = {place!r}: {words}")
     return path
 
 
@@ -117,9 +114,8 @@ def installed(python: Path) -> dict[str, str]:
         answer = subprocess.run([python, "-c", ask], capture_output=True, text=True, timeout=60, check=True)
         return json.loads(answer.stdout)
     except (OSError, subprocess.SubprocessError, ValueError) as problem:
-        raise PeersError(
-            f"{VARIABLE} = {python}: it is no Python that answers ({type(problem).__name__})"
-        ) from None
+        words = f"it is no Python that answers ({type(problem).__name__})"
+        raise PeersError(f"{VARIABLE} = {python}: {words}") from None
 
 
 def measure(
@@ -161,12 +157,8 @@ def run(program: str, measurement: Measurement, python: Path, allowance: float =
     with tempfile.TemporaryDirectory(prefix="samfem-peers-") as folder:
         target = Path(folder, "answer")
         words = [python, "-m", "verification.peers.worker", task, target]
-        quiet: dict[str, Any] = {
-            "stdout": subprocess.DEVNULL,
-            "stderr": subprocess.PIPE,
-            "text": True,
-            "errors": "replace",
-        }
+        quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+        quiet |= {"text": True, "errors": "replace"}
         try:
             done = subprocess.run(words, cwd=folder, env=environment, timeout=allowance, check=False, **quiet)
         except subprocess.TimeoutExpired:

@@ -29,10 +29,8 @@ def in_plane_strain(pressure: float, young: float, nu: float) -> float:
     3.46 in Hooke's law). sxx = syy = -(1 + 2 nu)/2 p and szz = -p: strain -(1 + nu)(1 - 2 nu)/2 p/E.
     pressure: p(0) in Pa; young, nu: of the body.
     """
-    nu = poisson("nu", nu)
-    return (
-        -(1.0 + nu) * (1.0 - 2.0 * nu) / 2.0 * not_negative("pressure", pressure) / positive("young", young)
-    )
+    nu, strain = poisson("nu", nu), not_negative("pressure", pressure) / positive("young", young)
+    return -(1.0 + nu) * (1.0 - 2.0 * nu) / 2.0 * strain
 
 
 def normal_strain(pressure: float, young: float, nu: float) -> float:
@@ -97,9 +95,8 @@ class Regime(StrEnum):
 
 def swift(B: float, C: float, n: float, strain: float) -> float:
     """Yield stress B (C + 1e6 strain)^n in Pa of the paper's Eq. 18, which counts in microstrain."""
-    return positive("B", B) * (positive("C", C) + MICROSTRAIN * not_negative("strain", strain)) ** positive(
-        "n", n
-    )
+    total = positive("C", C) + MICROSTRAIN * not_negative("strain", strain)
+    return positive("B", B) * total ** positive("n", n)
 
 
 def tear_pressure(strength: float, friction: float) -> float:

@@ -22,9 +22,8 @@ def disc_stress(layers: CoatedHalfSpace, contact_radius: float, r, z, *, pressur
     a = positive("contact_radius", contact_radius)
     r, z = np.atleast_1d(depth("r", r)), np.atleast_1d(depth("z", z))
     if not np.all(z >= 1e-3 * a):
-        raise ValueError(
-            f"z must be >= contact_radius/1000 = {1e-3 * a:g} m everywhere, smallest value {z.min()!r}"
-        )
+        least = f"contact_radius/1000 = {1e-3 * a:g} m"
+        raise ValueError(f"z must be >= {least} everywhere, smallest value {z.min()!r}")
     k, weight = wave_numbers(np.min(z), a + np.max(r), 40.0)
     amplitudes = layers.amplitudes(k)
     profiles = [layers.profiles(k, amplitudes, at, film=bool(at < layers.thickness)) for at in z]

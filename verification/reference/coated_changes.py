@@ -127,9 +127,8 @@ def breaking_thickness(
     while excess(lower) >= 0:
         lower -= math.log(STEP)
         if lower < math.log(THIN):
-            raise ValueError(
-                f"limit = {limit:g} is passed at thickness/a0 = {THIN:g} already, the thinnest film searched"
-            )
+            thinnest = f"thickness/a0 = {THIN:g} already, the thinnest film searched"
+            raise ValueError(f"limit = {limit:g} is passed at {thinnest}")
     while lower < math.log(THICK):
         upper = lower + math.log(STEP)
         if excess(upper) >= 0:

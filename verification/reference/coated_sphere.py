@@ -74,9 +74,8 @@ class CoatedContact:
     @cached_property
     def bare(self) -> CircularContact:
         """Hertz contact on the body without its film, at the same force."""
-        return CircularContact(
-            self.force, self.radius, _series(self.layers.modulus_body, self.counter_modulus)
-        )
+        modulus = _series(self.layers.modulus_body, self.counter_modulus)
+        return CircularContact(self.force, self.radius, modulus)
 
     def pressure(self, r) -> np.ndarray:
         """p(r), Pa, 0 outside; r >= 0 in m, any shape. With x = t/a and t^2 = r^2 + (a^2 - r^2) u^2: p =
@@ -178,9 +177,9 @@ class CoatedContact:
                 y = rim + sign * length * node**2  # the square root at y = x becomes smooth
                 factor = 2.0 * node * share * length * self._slopes(y**2)[1] * y**2
                 smaller = a * np.maximum(y, 1e-9)
-                stress = stress - factor[..., None] * subsurface_stress(
-                    r / smaller, 0.0, z / smaller, 1.0, contact_radius=1.0, nu=nu
-                )
+                places = r / smaller, 0.0, z / smaller
+                part = subsurface_stress(*places, 1.0, contact_radius=1.0, nu=nu)
+                stress = stress - factor[..., None] * part
         return self.scale / a * stress
 
 
@@ -194,8 +193,9 @@ def solve_radius(
     positive("radius", radius)
     if not counter_modulus > 0:
         raise ValueError(f"counter_modulus = {counter_modulus!r} must be > 0 (infinite: rigid)")
+    what = f"thickness/contact_radius = {h / a:.3g}"
     if h < THINNEST * a:
-        raise ValueError(f"thickness/contact_radius = {h / a:.3g} must be >= {THINNEST:g}")
+        raise ValueError(f"{what} must be >= {THINNEST:g}")
     k, weight = wave_numbers(h, 2.0 * a, SHORTEST)
     weighted = weight * a * _excess(layers, counter_modulus, k)
     count = 12 + math.ceil(7.0 * math.sqrt(a / h))
@@ -204,15 +204,11 @@ def solve_radius(
         if np.max(np.abs(c[-2:])) < TAIL * np.max(np.abs(c)):
             break
         if count > 400:
-            raise RuntimeError(
-                f"Legendre expansion does not converge at thickness/contact_radius = {h / a:.3g}"
-            )
+            raise RuntimeError(f"Legendre expansion does not converge at {what}")
         count = count * 3 // 2
     contact = CoatedContact(layers, radius, a, counter_modulus, penetration, c)
     if np.min(contact.pressure(np.linspace(0.0, 0.999, 200) * a)) < 0:
-        raise RuntimeError(
-            f"tensile pressure at thickness/contact_radius = {h / a:.3g}: the contact is not one disc"
-        )
+        raise RuntimeError(f"tensile pressure at {what}: the contact is not one disc")
     return contact
 
 
@@ -300,9 +296,8 @@ def _jacobi_sum(coefficients: np.ndarray, alpha: float, beta: float, y: np.ndarr
     for n, c in enumerate(coefficients):
         total = total + c * now
         m = 2.0 * n + both
-        ahead = (m + 1.0) * ((m + 2.0) * m * y + alpha**2 - beta**2) * now - 2.0 * (n + alpha) * (
-            n + beta
-        ) * (m + 2.0) * before
+        ahead = (m + 1.0) * ((m + 2.0) * m * y + alpha**2 - beta**2) * now
+        ahead = ahead - 2.0 * (n + alpha) * (n + beta) * (m + 2.0) * before
         before, now = now, ahead / (2.0 * (n + 1.0) * (n + both + 1.0) * m)
     return total
 

@@ -52,7 +52,8 @@ def coated_sliding_stress(
     if not np.all(z <= h if film else z >= h):
         raise ValueError(f"z must be {'<=' if film else '>='} thickness = {h:g} m everywhere, found {z!r}")
     k, weight = wave_numbers(np.min(2.0 * h - z if film else z), a + np.max(np.abs(x)), DECAYED)
-    weight = weight * p0 * k * a**2 * hertz_transform(k * a)
+    # the integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1 is the spherical j1(ka)/ka
+    weight = weight * p0 * a * spherical_jn(1, k * a)
     pressed, sheared = (layers.amplitudes(k, shear) for shear in (False, True))
     if film:  # less the amplitudes of e^{-s} and s e^{-s} in a half-space of film
         pressed[:, :2] -= [-2.0 * nu, -1.0]
@@ -63,11 +64,9 @@ def coated_sliding_stress(
     waves = np.stack([layers.profiles(k, sheared, at, film)[:4] for at in z], axis=1)
     across = np.stack([antiplane(layers, k, at, film) for at in z], axis=1)
     stress += mu * along_x(k, weight, waves, across, x=x)
-    return (
-        stress + sliding_stress(x[:, None], 0.0, z[None, :], p0, contact_radius=a, nu=nu, friction=mu)
-        if film
-        else stress
-    )
+    if film:
+        stress += sliding_stress(x[:, None], 0.0, z[None, :], p0, contact_radius=a, nu=nu, friction=mu)
+    return stress
 
 
 def largest_von_mises(
@@ -77,14 +76,8 @@ def largest_von_mises(
     a, h = contact_radius, layers.thickness
     x, share = np.linspace(-1.2 * a, 1.2 * a, 49), np.linspace(0.0, 1.0, 25)
     depths = h * share if film else h + 1.5 * (a + h) * share**2
-    return search(
-        lambda x, z: coated_sliding_stress(layers, peak_pressure, a, friction, x=x, z=z, film=film), x, depths
-    )
-
-
-def hertz_transform(ka: np.ndarray) -> np.ndarray:
-    """Integral of sqrt(1 - s^2) J0(ka s) s ds over 0 <= s <= 1, ka > 0: the spherical j1(ka)/ka."""
-    return spherical_jn(1, ka) / ka
+    load = layers, peak_pressure, a, friction
+    return search(lambda x, z: coated_sliding_stress(*load, x=x, z=z, film=film), x, depths)
 
 
 def antiplane(layers: CoatedHalfSpace, k: np.ndarray, z: float, film: bool) -> np.ndarray:

@@ -42,9 +42,8 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     """
     h, values = np.asarray(h, dtype=float), np.asarray(values, dtype=float)
     if h.shape != values.shape or h.ndim != 1 or np.unique(h).size < 3 or not np.all(h > 0.0):
-        raise ValueError(
-            f"h and values: at least three different cell sizes with one value each, not {h} and {values}"
-        )
+        needed = "at least three different cell sizes with one value each"
+        raise ValueError(f"h and values: {needed}, not {h} and {values}")
     if not np.all(np.isfinite(values)):
         raise ValueError(f"values: finite, not {values}")
 
@@ -56,9 +55,8 @@ def extrapolate(h: Sequence[float], values: Sequence[float]) -> Limit:
     trials = np.linspace(*ORDERS, 75)  # coarse first: the misfit may have two minima
     best = trials[np.argmin([np.sum(fitted(order)[1] ** 2) for order in trials])]
     bounds = (max(best - 0.05, ORDERS[0]), min(best + 0.05, ORDERS[1]))
-    order = minimize_scalar(
-        lambda p: float(np.sum(fitted(p)[1] ** 2)), bounds=bounds, options={"xatol": 1e-6}
-    ).x
+    close = {"bounds": bounds, "options": {"xatol": 1e-6}}
+    order = minimize_scalar(lambda p: float(np.sum(fitted(p)[1] ** 2)), **close).x
     (limit, share), misfit = fitted(order)
     finest = values[np.argmin(h)]
     scatter = float(np.max(np.abs(misfit)) / abs(finest))

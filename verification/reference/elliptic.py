@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import elliprd, elliprf
 
 from .checks import Checked, coordinate, depth, poisson, positive
-from .stress import components, von_mises
+from .stress import components, largest_mises
 
 
 def axis_ratio(radius_ratio: float) -> float:
@@ -81,9 +81,8 @@ class EllipticContact(Checked):
         k2 = (b / a) ** 2
         low = _confocal(x2, y2, k2)
         shape = elliprf(1.0 + low, k2 + low, low)
-        shape = (
-            shape - (x2 * elliprd(k2 + low, low, 1.0 + low) + y2 * elliprd(1.0 + low, low, k2 + low)) / 3.0
-        )
+        along, across = elliprd(k2 + low, low, 1.0 + low), elliprd(1.0 + low, low, k2 + low)
+        shape = shape - (x2 * along + y2 * across) / 3.0
         return self.peak_pressure * b / self.modulus * shape
 
     def gap(self, x, y) -> np.ndarray:
@@ -117,16 +116,9 @@ class EllipticContact(Checked):
 
     def largest_axis_von_mises(self, nu: float) -> tuple[float, float]:
         """Largest von Mises stress on the axis (Pa) and its depth (m), between 0.02 and 2 minor semi-axes."""
-        from scipy.optimize import minimize_scalar  # noqa: PLC0415 - as above
-
         scale = min(self.semi_axes)
-        best = minimize_scalar(
-            lambda t: -float(von_mises(self.axis_stress(t * scale, nu))) / self.peak_pressure,
-            bounds=(0.02, 2.0),
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        return float(-best.fun * self.peak_pressure), float(best.x * scale)
+        largest, depth = largest_mises(lambda t: self.axis_stress(t * scale, nu), (0.02, 2.0))
+        return largest, depth * scale
 
 
 def _confocal(x2, y2, k2) -> np.ndarray:

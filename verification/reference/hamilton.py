@@ -70,12 +70,7 @@ def largest_von_mises(
     x, z = np.meshgrid(np.linspace(-0.8, 0.8, 33), np.linspace(0.2, 1.0, 33))
     start = np.argmax(mises((x, z)))
     bounds = [(-0.8, 0.8), (0.1, 1.0)]
-    best = minimize(
-        lambda point: -float(mises(point)),
-        [x.flat[start], z.flat[start]],
-        method="Nelder-Mead",
-        bounds=bounds,
-        options={"xatol": 1e-8, "fatol": 1e-14},
-    )
+    how = {"method": "Nelder-Mead", "bounds": bounds, "options": {"xatol": 1e-8, "fatol": 1e-14}}
+    best = minimize(lambda point: -float(mises(point)), [x.flat[start], z.flat[start]], **how)
     subsurface = (float(-best.fun * p0), float(best.x[0] * a), float(best.x[1] * a))
     return subsurface, (float(mises((-1.0, 0.0))) * p0, -a, 0.0)

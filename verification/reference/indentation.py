@@ -74,9 +74,8 @@ class JacksonGreen(Checked):
         w = depth("w", w)
         safe = np.maximum(w, self.elastic)
         plastic = 4.0 * self._hardness(safe) / self.factor * -np.expm1(-(safe ** (5.0 / 9.0)) / 25.0) * safe
-        return np.where(
-            w <= self.elastic, w**1.5, np.exp(-(safe ** (5.0 / 12.0)) / 4.0) * safe**1.5 + plastic
-        )[()]
+        load = np.exp(-(safe ** (5.0 / 12.0)) / 4.0) * safe**1.5 + plastic
+        return np.where(w <= self.elastic, w**1.5, load)[()]
 
     def area(self, w) -> np.ndarray:
         """A/A_c = w* (w*/1.9)^B, B = 0.14 exp(23 Y/E*)."""

@@ -132,10 +132,8 @@ def wave_numbers(length: float, reach: float, top: float) -> tuple[np.ndarray, n
     """
     edges = [0.0, *(4.0 ** -np.arange(8, 0, -1.0)), *(2.0 ** np.arange(0, math.log2(top)))]
     edges = np.append(edges, top) / length
-    pieces = [
-        np.linspace(a, b, 1 + max(1, math.ceil((b - a) * reach / 36.0)))[:-1] for a, b in pairwise(edges)
-    ]
-    starts = np.concatenate([*pieces, edges[-1:]])
+    panels = [(a, b, 1 + max(1, math.ceil((b - a) * reach / 36.0))) for a, b in pairwise(edges)]
+    starts = np.concatenate([*(np.linspace(*panel)[:-1] for panel in panels), edges[-1:]])
     t, w = np.polynomial.legendre.leggauss(24)
     half = np.diff(starts)[:, None] / 2.0
     return (starts[:-1, None] + half * (1.0 + t)).ravel(), (half * w).ravel()

@@ -160,10 +160,8 @@ class GrowingSphere:
         x, y, z = np.broadcast_arrays(coordinate("x", x), coordinate("y", y), coordinate("z", z))
         r = np.sqrt(x**2 + y**2 + z**2)
         deviator, s_r = self.fields(r).deviator, self.radial_stress(r)
-        n = [each / np.where(r == 0, 1.0, r) for each in (x, y, z)]
-        products = components(
-            n[0] * n[0], n[1] * n[1], n[2] * n[2], n[1] * n[2], xz=n[0] * n[2], xy=n[0] * n[1]
-        )
+        nx, ny, nz = (each / np.where(r == 0, 1.0, r) for each in (x, y, z))
+        products = components(nx * nx, ny * ny, nz * nz, ny * nz, xz=nx * nz, xy=nx * ny)
         return (s_r + deviator)[..., None] * components(1.0, 1.0, 1.0) - deviator[..., None] * products
 
     def zone(self) -> tuple[float, float]:

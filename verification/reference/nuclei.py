@@ -88,12 +88,8 @@ def mindlin_displacement(place, c, nu: float) -> list[list]:
     radial = height * a + k * height * b + saddle * depth - pole / r2  # u_x by the normal force, over x
     normal = k / r1 + (8 * m * m - k) / r2 + height * height * a + (k * depth * depth - 2 * c * z) * b
     normal = normal + saddle * depth * depth
-    green = [
-        [in_plane(x), across, x * radial],
-        [across, in_plane(y), y * radial],
-        [x * down, y * down, normal],
-    ]
-    return [[entry / (16 * np.pi * m) for entry in line] for line in green]
+    along = [[in_plane(x), across, x * radial], [across, in_plane(y), y * radial]]
+    return [[entry / (16 * np.pi * m) for entry in line] for line in (*along, [x * down, y * down, normal])]
 
 
 def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) -> np.ndarray:
@@ -103,9 +99,9 @@ def _derivatives(point, c, nu: float, *, along: int | None, source: int | None) 
     ]
     green = mindlin_displacement(seeds, Jet(c, 0.0, float(source == 2)), nu)
     part = (along is not None) + 2 * (source is not None)
-    return np.array(
-        [[np.broadcast_to(entry.parts[part], np.shape(entry.parts[0])) for entry in line] for line in green]
-    )
+    parts = [(entry.parts[part], np.shape(entry.parts[0])) for line in green for entry in line]
+    found = np.array([np.broadcast_to(values, shape) for values, shape in parts])
+    return found.reshape(3, 3, *found.shape[1:])
 
 
 def _elasticity(nu: float) -> np.ndarray:

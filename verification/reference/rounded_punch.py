@@ -19,9 +19,7 @@ from .checks import Checked, depth
 from .flat_punch import FlatPunch
 from .quadrature import gauss
 
-POINTS = (
-    200  # of Gauss, in the fourth root of the distance from a branch point: force of the pressure to 1e-9
-)
+POINTS = 200  # of Gauss, in the fourth root of the distance from a branch point: force to 1e-9
 
 
 @dataclass(frozen=True)
@@ -75,12 +73,8 @@ class RoundedPunch(Checked):
 
     def axis_stress(self, z, nu: float) -> np.ndarray:
         """Stresses on the axis, (..., 6) in Pa."""
-        s, share = self._punches()
-        parts = (
-            FlatPunch(2.0 * self.modulus * one * part, one, self.modulus).axis_stress(z, nu)
-            for one, part in zip(s, share, strict=True)
-        )
-        return np.sum(list(parts), axis=0)
+        forces = ((s, 2.0 * self.modulus * s * share) for s, share in zip(*self._punches(), strict=True))
+        return np.sum([FlatPunch(force, s, self.modulus).axis_stress(z, nu) for s, force in forces], axis=0)
 
     def _slope(self, beyond: np.ndarray) -> np.ndarray:
         """dg/ds at s = b + beyond: [2 sqrt(s^2 - b^2) - b acos(b/s)]/R."""

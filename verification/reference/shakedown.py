@@ -40,9 +40,8 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     }
     middle = (s.max(axis=0) + s.min(axis=0)) / 2
     start = np.append(middle, (square - 2 * s @ middle).max())
-    found = minimize(
-        cost, start, jac=slope, constraints=[inside], method="SLSQP", options={"ftol": 1e-14, "maxiter": 300}
-    )
+    how = {"method": "SLSQP", "options": {"ftol": 1e-14, "maxiter": 300}}
+    found = minimize(cost, start, jac=slope, constraints=[inside], **how)
     centre = found.x[:-1]
     return scale * centre, scale * float(np.sqrt(((s - centre) ** 2).sum(axis=1).max()))
 
@@ -53,13 +52,9 @@ def pass_of(depth: float, *, nu: float, friction: float, alternates: bool = Fals
     """
     x = np.linspace(-FAR, FAR, POINTS)
     signs = (1.0, -1.0) if alternates and friction else (1.0,)
-    stress = np.concatenate(
-        [
-            sliding_stress(x, 0.0, depth, 1.0, contact_radius=1.0, nu=nu, friction=sign * friction)
-            for sign in signs
-        ]
-    )
-    return np.vstack([np.zeros(6), deviator(stress)]) * SHEARS
+    load = {"contact_radius": 1.0, "nu": nu}
+    stress = [sliding_stress(x, 0.0, depth, 1.0, **load, friction=sign * friction) for sign in signs]
+    return np.vstack([np.zeros(6), deviator(np.concatenate(stress))]) * SHEARS
 
 
 def travelling_limit(
@@ -67,9 +62,8 @@ def travelling_limit(
 ) -> tuple[float, float]:
     """(p0/k at the shakedown limit, depth of the worst point in contact radii); below the surface."""
     depths = np.linspace(0.2, 0.6, 41) if depths is None else depths
-    radii = [
-        smallest_ball(pass_of(float(z), nu=nu, friction=friction, alternates=alternates))[1] for z in depths
-    ]
+    load = {"nu": nu, "friction": friction, "alternates": alternates}
+    radii = [smallest_ball(pass_of(float(z), **load))[1] for z in depths]
     worst = int(np.argmax(radii))
     return float(np.sqrt(2) / radii[worst]), float(depths[worst])
 

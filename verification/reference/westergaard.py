@@ -69,9 +69,8 @@ class WavyContact(Checked):
         psi = self._phase(x)
         distance = np.sqrt(np.maximum(self._beyond(psi), 0.0))
         m = self.load_ratio
-        return (
-            2.0 * self.amplitude * (np.abs(np.sin(psi)) * distance - m * np.arcsinh(distance / math.sqrt(m)))
-        )
+        arch = m * np.arcsinh(distance / math.sqrt(m))
+        return 2.0 * self.amplitude * (np.abs(np.sin(psi)) * distance - arch)
 
     @property
     def approach(self) -> float:

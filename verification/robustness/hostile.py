@@ -17,15 +17,12 @@ cells = [17, 17]
 [fem]
 cells_per_radius = 4
 """
-PLASTIC = SMALL.replace(
-    "[counterbody]", '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n[counterbody]'
-)
+YIELDING = '[body.plasticity]\nlaw = "table"\nfile = "yield.csv"\n'
+PLASTIC = SMALL.replace("[counterbody]", f"{YIELDING}[counterbody]")
 LAYERS = PLASTIC.replace("cells = [17, 17]", 'cells = [17, 17]\nlayers = 3\ndepth = "40 um"')
 APPROACH = SMALL.replace('force = "1 N"', 'approach = "0.3 um"')
-ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"').replace(
-    "[grid]\ncells = [17, 17]\n", ""
-)
-ROUGH += '[surface]\nkind = "file"\npath = "heights.npz"\n'
+ROUGH = SMALL.replace('shape = "sphere"\nradius = "1 mm"', 'shape = "flat"')
+ROUGH = ROUGH.replace("[grid]\ncells = [17, 17]\n", "") + '[surface]\nkind = "file"\npath = "heights.npz"\n'
 RARE = f"""{PLASTIC}[friction]
 coefficient = 0.1
 coupling = false
@@ -68,10 +65,8 @@ MARKUP = (
 WHOLE = "1|0|-1|2|3|4|64|129|1025|4097|4098|1000000000|18446744073709551616|65.0|true|nan".split("|")
 NUMBERS = (
     *WHOLE,
-    *"-0|0.0|-0.0|1e308|1e-308|5e-324|1e400|-1e400|-nan|inf|-inf|1e15|1e-15|1e-14|0.1|0.5|0.4999999".split(
-        "|"
-    ),
-    *"0.51|2.5|1000|1001|9223372036854775808".split("|"),
+    *"-0 0.0 -0.0 1e308 1e-308 5e-324 1e400 -1e400 -nan inf -inf 1e15 1e-15 1e-14 0.1 0.5 0.4999999".split(),
+    *"0.51 2.5 1000 1001 9223372036854775808".split(),
     *("0x1F", "0o17", "0b11", "1_000", "1__0", "01", ".5", "5.", "+3", "1e", "--1", "9" * 3_000, "9" * 5_000),
     "0." + "3" * 9_000,
 )
@@ -114,9 +109,8 @@ CELLS = (
     *("9" * 5_000, "\x00"),
 )
 HEADS = 'x,y,z||x_m;y_m;height_m|y_m, x_m ,height_m|"x_m","y_m","height_m"|x_m,x_m,y_m'.split("|")
-MATRIX_KEYS = (
-    'extent = ["12 um", "10 um"]|unit = "nm"|extent = "12 um"|unit = "N"|unit = 1|extent = ["0 m", "1 m"]'
-).split("|")
+EXTENTS = [f"extent = {each}" for each in ('["12 um", "10 um"]', '"12 um"', '["0 m", "1 m"]')]
+MATRIX_KEYS = [EXTENTS[0], 'unit = "nm"', EXTENTS[1], 'unit = "N"', "unit = 1", EXTENTS[2]]
 CROPS = (
     '[]|[1, 2]|["4 um", "5 um"]|["5.5 um", "5 um"]|["1e30 m", "5 um"]|["-3 um", "5 um"]|["3 N", "5 um"]'
     '|["9 um", "0 um", "6 um", "5 um"]|["12.1 um", "0 um", "6 um", "5 um"]|["1e-30 m", "0 m", "6 um", "5 um"]'

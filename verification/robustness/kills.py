@@ -116,8 +116,7 @@ def inspect(folder: Path, unfinished: bool = True) -> Findings:
     for summary in folder.rglob(SUMMARY):
         missing = [name for name in OF_EVERY_RUN if not (summary.parent / name).is_file()]
         if missing:
-            text = f"{summary.relative_to(folder)} without {', '.join(missing)}"
-            found.append(("early-summaries", text))
+            found.append(("early-summaries", f"{summary.relative_to(folder)} without {', '.join(missing)}"))
     return found
 
 
@@ -148,9 +147,8 @@ def differences(folder: Path, undisturbed: Mapping[str, bytes], how: str) -> Fin
     """The tables of a folder that differ from those of the undisturbed run."""
     found = tables(folder)
     names = sorted(found.keys() | undisturbed.keys())
-    return [
-        ("changed-tables", f"{name}: {how}") for name in names if found.get(name) != undisturbed.get(name)
-    ]
+    other = [name for name in names if found.get(name) != undisturbed.get(name)]
+    return [("changed-tables", f"{name}: {how}") for name in other]
 
 
 Trial = tuple[str, Findings]

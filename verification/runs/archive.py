@@ -49,9 +49,7 @@ def read_archive(path: Path) -> tuple[dict[str, np.ndarray], dict]:
         raise ArchiveError(f"{path} is not there") from None
     except ArchiveError:
         raise
-    except (
-        Exception
-    ) as error:  # for odd bytes zipfile and numpy raise errors of a dozen kinds, TokenError among them
+    except Exception as error:  # of a dozen kinds for odd bytes in zipfile and numpy, TokenError among them
         raise ArchiveError(f"{path} is no archive, or a damaged one ({error})") from None
     if not isinstance(values, dict):
         raise ArchiveError(f"{path} is no archive: its values are no table")

@@ -30,12 +30,7 @@ INTERVAL = "SAMFEM_CHECKPOINT_S"
 """Environment variable with another interval in s; 0: every step."""
 MACHINE = ("os", "architecture", "cpu", "cores")
 PACKAGES = ("python", "numpy", "scipy", "scikit-fem")
-WORDS = {
-    "scene_sha256": "scene",
-    "code": "version of samfem",
-    "machine": "machine",
-    "threads": "number of threads",
-}
+WORDS = {"scene_sha256": "scene", "code": "version of samfem", "threads": "number of threads"}
 """Names of the identity for the reader, where they differ."""
 
 
@@ -141,10 +136,9 @@ def read(folder: Path, who: Mapping) -> Checkpoint | None:
     found = values["identity"]
     differs = [WORDS.get(name, name) for name in who if found.get(name) != plain(who[name])]
     if differs:
-        raise FolderError(
-            f"{path} is of another {', another '.join(differs)}, and cannot be continued: "
-            "delete it to start anew, or solve into another folder (--out)"
-        )
+        words = "delete it to start anew, or solve into another folder (--out)"
+        another = ", another ".join(differs)
+        raise FolderError(f"{path} is of another {another}, and cannot be continued: {words}")
     return Checkpoint(str(found["model"]), arrays, values["values"])
 
 

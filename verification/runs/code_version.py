@@ -17,24 +17,13 @@ from verification.runs.provenance import installed
 ROOT = Path(__file__).resolve().parents[2]
 SUFFIXES = (".py", ".json", ".toml", ".csv", ".gz")
 CACHE = "__pycache__"
-_OF_RESULTS = (
-    "verification/runs/models.py",
-    "verification/runs/model_range.py",
-    "verification/data/model_range.csv",
-)
-PLACES = {
-    SAM: ("sam", *_OF_RESULTS),
-    FEM: ("fem_reference", "sam/scene", *_OF_RESULTS),
-    FEM_3D: ("fem_reference", "sam/scene", *_OF_RESULTS),
-    FEM_LINE: ("fem_reference", "sam/scene", *_OF_RESULTS),
-}
+_RUNS = "verification/runs/models.py", "verification/runs/model_range.py"
+_OF_RESULTS = (*_RUNS, "verification/data/model_range.csv")
+PLACES = {SAM: ("sam", *_OF_RESULTS)}
+PLACES |= dict.fromkeys((FEM, FEM_3D, FEM_LINE), ("fem_reference", "sam/scene", *_OF_RESULTS))
 """Files and folders, below the root, that decide the result of a model."""
-PACKAGES = {
-    SAM: ("numpy", "scipy"),
-    FEM: ("numpy", "scipy", "scikit-fem"),
-    FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg"),
-    FEM_LINE: ("numpy", "scipy", "scikit-fem"),
-}
+PACKAGES: dict[str, tuple[str, ...]] = dict.fromkeys((FEM, FEM_LINE), ("numpy", "scipy", "scikit-fem"))
+PACKAGES |= {SAM: ("numpy", "scipy"), FEM_3D: ("numpy", "scipy", "scikit-fem", "pyamg")}
 OF_CASES = ("sam", "fem_reference", "verification", "samfem")
 NOT_OF_CASES = (*("verification/suite", "verification/scenes"), "verification/runs/code_version.py")
 """What decides the outcome of a verification case, but for what only words it: rows are judged anew from

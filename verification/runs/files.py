@@ -162,10 +162,8 @@ def read_run(folder: str | Path) -> Run:
     """The result in `folder`. Raises FolderError if there is none, or none that this version wrote."""
     folder = Path(folder)
     summary = read_summary(folder)
-    tables = {
-        name: _read_table(folder / f"{name}.csv") for name in TABLES if (folder / f"{name}.csv").exists()
-    }
-    return Run(folder, summary, tables)
+    paths = {name: folder / f"{name}.csv" for name in TABLES}
+    return Run(folder, summary, {name: _read_table(path) for name, path in paths.items() if path.exists()})
 
 
 def meshes_in(folder: Path) -> dict[str, Path]:
@@ -192,9 +190,8 @@ def of_last_load(run: Run) -> Run:
     """The run with the last load reached in place of its peak, to be drawn; the same if that was reached."""
     if not run.last_fitting:
         return run
-    tables = {
-        name: table.assign(state=PEAK) if "state" in table else table for name, table in run.tables.items()
-    }
+    stated = {name: table for name, table in run.tables.items() if "state" in table}
+    tables = {**run.tables, **{name: table.assign(state=PEAK) for name, table in stated.items()}}
     return replace(run, summary={**run.summary, "quantities": run.last_fitting}, tables=tables)
 
 
@@ -206,16 +203,12 @@ def read_summary(folder: Path) -> dict:
     except FileNotFoundError:
         reason = "it has no summary.json" if folder.is_dir() else "there is no such folder"
         raise FolderError(f"{folder} is no result: {reason}; run samfem solve first") from None
-    except (
-        OSError,
-        ValueError,
-        RecursionError,
-    ) as error:  # ValueError: not UTF-8, not JSON, a null character in the name
+    # ValueError: not UTF-8, not JSON, a null character in the name
+    except (OSError, ValueError, RecursionError) as error:
         raise FolderError(f"{folder} is no result: summary.json cannot be read ({_why(error)})") from None
     if not isinstance(summary, dict) or summary.get("format") != FORMAT:
-        raise FolderError(
-            f'{folder} is no result: its summary.json, of another version, does not say "format": "{FORMAT}"'
-        )
+        words = f'its summary.json, of another version, does not say "format": "{FORMAT}"'
+        raise FolderError(f"{folder} is no result: {words}")
     return summary
 
 
@@ -236,9 +229,8 @@ def check_target(folder: Path, also: Sequence[str] = ()) -> None:
     except OSError as error:  # no permission, a name that is too long
         raise FolderError(f"{folder} cannot be used: {error.strerror}") from None
     if strange := [name for name in names if not (_of_a_run(name) or name in also)]:
-        raise FolderError(
-            f"{folder} is not the folder of a run (it holds {min(strange)}): give a new or empty one"
-        )
+        holds = f"it holds {min(strange)}"
+        raise FolderError(f"{folder} is not the folder of a run ({holds}): give a new or empty one")
 
 
 def check_place(folder: Path) -> None:
@@ -248,9 +240,8 @@ def check_place(folder: Path) -> None:
         if not parent.is_dir() or not os.access(parent, os.W_OK):
             raise FolderError(f"{folder} cannot be made: {parent} is no folder that can be written to")
     elif not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise FolderError(
-            f"{folder} is no folder that can be written to: give one, new, empty or of an older run"
-        )
+        words = "give one, new, empty or of an older run"
+        raise FolderError(f"{folder} is no folder that can be written to: {words}")
 
 
 def _holds(folder: Path, summary: Mapping) -> bool:
@@ -282,11 +273,8 @@ def clear_run(folder: Path, *, figures: bool = True) -> None:
 
 
 def _of_a_run(name: str) -> bool:
-    return (
-        name in (*RUN_FILES, FIGURES, MEMBERS)
-        or is_mesh(name)
-        or (name.startswith(".") and name.endswith(_TEMPORARY))
-    )
+    temporary = name.startswith(".") and name.endswith(_TEMPORARY)
+    return temporary or name in (*RUN_FILES, FIGURES, MEMBERS) or is_mesh(name)
 
 
 @contextmanager

@@ -16,9 +16,8 @@ from filelock import lock_descriptor
 
 from verification.runs.files import FolderError
 
-LOCKS = Path(
-    "/proc/locks"
-)  # the locks of this machine: "1: FLOCK  ADVISORY  WRITE pid major:minor:inode 0 EOF"
+LOCKS = Path("/proc/locks")
+"""Of this machine: "1: FLOCK  ADVISORY  WRITE pid major:minor:inode 0 EOF"."""
 
 
 @contextmanager

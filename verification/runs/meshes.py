@@ -157,9 +157,8 @@ def _mesh_of(arrays: Mapping[str, np.ndarray]) -> Any:
             raise ValueError("shapes")
         if not ((nodes >= 0) & (nodes < len(points))).all() or kinds.shape != ends.shape:
             raise ValueError("nodes")
-        if not all(
-            kind in _ANY_SIZE or (sizes[kinds == kind] == _size(kind)).all() for kind in np.unique(kinds)
-        ):
+        fixed = set(np.unique(kinds).tolist()) - set(_ANY_SIZE)
+        if not all((sizes[kinds == kind] == _size(kind)).all() for kind in fixed):
             raise InputError("it has cells that are not read: those of fixed numbers of nodes are")
         mesh = pyvista.UnstructuredGrid(np.insert(nodes, ends - sizes, sizes), kinds, points)
     for name, values in arrays.items():
@@ -233,10 +232,8 @@ def _unstructured(fields: FieldMesh) -> Any:
         sizes += [np.full(len(corners), len(order))]
         nodes += [np.asarray(corners, dtype=np.int64)[:, order].ravel()]
     ends = np.append(0, np.cumsum(np.concatenate(sizes)))
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(ends.astype(np.int64), deep=1),
-        numpy_to_vtkIdTypeArray(np.concatenate(nodes), deep=1),
-    )
+    numbers = ends.astype(np.int64), np.concatenate(nodes)
+    cells.SetData(*(numpy_to_vtkIdTypeArray(each, deep=1) for each in numbers))
     mesh.SetCells(numpy_to_vtk(np.concatenate(kinds), deep=1), cells)
     _add(mesh.GetPointData(), fields.point_data)
     _add(mesh.GetCellData(), fields.cell_data)

@@ -126,11 +126,8 @@ class Store:
             values, arrays = _read(path)
             made = {"created": values["created"], "commit": values["commit"]}
             if _is_stale(values, version):
-                return Lookup(
-                    None,
-                    f"stale: computed by code {values['code_version'][:8]} of {values['created']}",
-                    **made,
-                )
+                code = values["code_version"][:8]
+                return Lookup(None, f"stale: computed by code {code} of {values['created']}", **made)
             return Lookup(decode(values.get("content"), arrays, wanted), "", **made)
         except (OSError, ArchiveError, CodecError) as error:
             return Lookup(None, f"damaged: {error}")
@@ -152,9 +149,8 @@ class Store:
                 write_archive(self._path(who), arrays, values | {"content": tree})
         except (OSError, CodecError) as error:
             reason = getattr(error, "strerror", None) or error
-            self._warn(
-                f"{reason}: results are not kept; give another folder by {FOLDER}, or none to do without"
-            )
+            what = f"give another folder by {FOLDER}, or none to do without"
+            self._warn(f"{reason}: results are not kept; {what}")
 
     def entries(self) -> list[Entry]:
         """Every entry, the oldest first; each is read whole, so that damage shows."""
@@ -279,10 +275,8 @@ def _commit() -> str:
 def _read(path: Path) -> tuple[dict, dict]:
     """(values, arrays) of an entry, its own words checked. Raises ArchiveError."""
     arrays, values = read_archive(path)
-    texts = ("format", "code_version", "created", "commit", "title")
-    if not (
-        all(isinstance(values.get(name), str) for name in texts) and isinstance(values.get("identity"), dict)
-    ):
+    texts = (values.get(name) for name in ("format", "code_version", "created", "commit", "title"))
+    if not (all(isinstance(text, str) for text in texts) and isinstance(values.get("identity"), dict)):
         raise ArchiveError(f"{path} is no entry of a store")
     if _key(values["identity"]) != path.stem:
         raise ArchiveError(f"{path} holds something else than its name says")
@@ -304,8 +298,7 @@ def _entry(path: Path) -> Entry:
         version = code_version(what) if what in models.MODELS else ""
         version = version_of_cases() if kind == OUTCOME else version
         state = STALE if _is_stale(values, version) else CURRENT
-        return Entry(
-            path, str(kind), str(what), values["title"], values["created"], values["commit"], state, size
-        )
+        said = {name: values[name] for name in ("title", "created", "commit")}
+        return Entry(path, str(kind), str(what), state=state, size=size, **said)
     except (OSError, ArchiveError):
         return Entry(path, "", "", "", "", "", DAMAGED, size)

@@ -53,10 +53,8 @@ KINDS = ("list", "range", "log", "random", "random-log")
 COUNT = Number("a whole number", 1, MOST_POINTS, whole=True)
 
 _EXACT, _ROUND = Context(prec=40), Context(prec=15)
-_ENDS = (
-    'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], '
-    "the first below the second"
-)
+_ENDS = 'two numbers, or two strings with units of one dimension, such as ["0.1 N", "0.5 N"], '
+_ENDS += "the first below the second"
 _LIST = "one or more numbers, texts, true, false or lists of these; strings with units all of one dimension"
 
 
@@ -76,11 +74,8 @@ def _listed(value: object) -> tuple:
 
 
 def _ends(value: object) -> tuple:
-    low, high = (
-        (_in(unit_of(value[0]), entry) for entry in value)
-        if isinstance(value, list) and len(value) == 2
-        else (None, None)
-    )
+    pair = value if isinstance(value, list) and len(value) == 2 else (None, None)
+    low, high = (_in(unit_of(pair[0]), entry) for entry in pair)
     if low is None or high is None or not low < high:
         raise refused(_ENDS)
     return tuple(value)
@@ -215,11 +210,9 @@ def in_si(value: Any) -> float | int | str:
     unit = si_unit(value)
     if unit:
         return float(in_unit(value, unit))
-    if isinstance(value, bool | list):
-        return json.dumps(
-            [in_si(entry) for entry in value] if isinstance(value, list) else value, ensure_ascii=False
-        )
-    return value
+    if isinstance(value, list):
+        return json.dumps(list(map(in_si, value)), ensure_ascii=False)
+    return json.dumps(value) if isinstance(value, bool) else value
 
 
 MOST_LEVELS = 6  # tables in tables of a varied key
@@ -235,9 +228,8 @@ _NO_DESIGN = 'with mode = "morris", "sobol" or "uniform" only: remove it'
 def _axes(value: object) -> dict:
     """The table [vary], keys in one piece: "loading.force" = {...} and loading.force = {...} are one."""
     if not isinstance(value, Mapping) or not value:
-        raise refused(
-            'one or more keys of the scene, such as "loading.force" = { list = ["0.1 N", "0.2 N"] }'
-        )
+        example = '"loading.force" = { list = ["0.1 N", "0.2 N"] }'
+        raise refused(f"one or more keys of the scene, such as {example}")
     found = dict(_leaves(value, ()))
     for key in found:
         parts = key.split(".")
@@ -252,11 +244,8 @@ def _axes(value: object) -> dict:
 def _leaves(table: Mapping, above: tuple[str, ...]) -> Iterator[tuple[str, object]]:
     for key, value in table.items():
         path = (*above, key)
-        deeper = (
-            isinstance(value, Mapping)
-            and value
-            and all(isinstance(entry, Mapping) for entry in value.values())
-        )
+        inside = value.values() if isinstance(value, Mapping) else ()
+        deeper = inside and all(isinstance(entry, Mapping) for entry in inside)
         if deeper and len(path) <= MOST_LEVELS and not set(value) & {*KINDS, "count", "block"}:
             yield from _leaves(value, path)
         else:
@@ -430,13 +419,10 @@ def study_of(given: Mapping[str, Any]) -> Points:
         table["scene"] = place.name
     if isinstance(vary := table.get("vary"), Mapping):
         axes = {key: axis if isinstance(axis, Mapping) else {"list": axis} for key, axis in vary.items()}
-        table["vary"] = {
-            key: {
-                name: _from_python(value, unit_of_key(Scene, key) if name in KINDS else "")
-                for name, value in axis.items()
-            }
-            for key, axis in axes.items()
-        }
+        table["vary"] = made = {key: dict(axis) for key, axis in axes.items()}
+        for key, axis in made.items():
+            unit = unit_of_key(Scene, key)
+            axis |= {name: _from_python(value, unit if name in KINDS else "") for name, value in axis.items()}
     try:
         study = Study.model_validate(table, context={"spelling": "file"})
     except ValidationError as error:
@@ -457,11 +443,9 @@ def _points(
     study: Study, base: Mapping, place: Path, source: str
 ) -> tuple[list[StudyPoint], dict[str, bytes]]:
     """Every point, and the files that its scenes name."""
-    no_tables = [
-        Problem(f"vary.{key}", "a key", reason) for key in study.vary if (reason := _no_table(base, key))
-    ]
-    if no_tables:
-        raise SceneError(no_tables, source)
+    reasons = {key: reason for key in study.vary if (reason := _no_table(base, key))}
+    if reasons:
+        raise SceneError([Problem(f"vary.{key}", "a key", why) for key, why in reasons.items()], source)
     points, inputs, refusals = [], Inputs(place.parent), {}
     for index, values in enumerate(study.combinations()):
         table = base
@@ -483,9 +467,8 @@ def _points(
     if all(point.scene is None for point in points):
         rest = len(refusals) - MOST_REASONS
         more = [Problem("", "", f"and {rest} more")] if rest > 0 else []
-        raise SceneError(
-            [*list(refusals)[:MOST_REASONS], *more], f"{source}: every scene is refused: {place}"
-        )
+        said = [*list(refusals)[:MOST_REASONS], *more]
+        raise SceneError(said, f"{source}: every scene is refused: {place}")
     return points, inputs.contents
 
 

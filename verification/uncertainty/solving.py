@@ -157,9 +157,8 @@ class Family:
             for member in members:
                 if not member.result.converged:
                     return f"{member.label}: {member.result.status}: raise {key}"
-        cuts = {
-            each.label: each.result.cost.get("step_cuts") or 0 for each in itertools.chain(*parts.values())
-        }
+        every = itertools.chain(*parts.values())
+        cuts = {each.label: each.result.cost.get("step_cuts") or 0 for each in every}
         if len(set(cuts.values())) > 1:
             words = ", ".join(f"{cut} with {label}" for label, cut in cuts.items())
             return f"load steps were cut differently ({words}): raise loading.steps"
@@ -268,10 +267,8 @@ def _cell_members(scene: Scene, model: str, room: Room, depths: Sequence[float] 
         count = scene.fem.cells_per_radius
         ratio = min(max(sqrt(count / LEFT), RATIO), WIDEST) if model == models.FEM else RATIO
         of = [(scene, count), *((other, max(_whole(count / ratio**k), 2)) for k in (1, 2))]
-        return [
-            Member(with_keys(each, "fem", cells_per_radius=n), f"{n} elements in the radius", n, 1.0 / n)
-            for each, n in of
-        ]
+        scenes = [(with_keys(each, "fem", cells_per_radius=n), n) for each, n in of]
+        return [Member(each, f"{n} elements in the radius", n, 1.0 / n) for each, n in scenes]
     grid = sam.plan(scene).on(room).grid
     first = Member(scene, f"{grid.nx} cells", grid.nx, cell_size(grid))
     return [first, *(_of_grid(other, grid, RATIO**k, depths) for k in (1, 2))]
@@ -355,11 +352,9 @@ def members_of_box(coarsest: Member) -> tuple[Member, ...]:
     scene, box = coarsest.scene, coarsest.scene.fem.box
     if box / RATIO < LEAST_BOX:
         return ()
-    words = f"radii on {coarsest.label}"
-    return tuple(
-        Member(with_keys(scene, "fem", box=size), f"a box of {size:.3g} {words}", size, 1.0 / size)
-        for size in (box, box / RATIO)
-    )
+    scenes = {size: with_keys(scene, "fem", box=size) for size in (box, box / RATIO)}
+    label = f"a box of {{:.3g}} radii on {coarsest.label}"
+    return tuple(Member(each, label.format(size), size, 1.0 / size) for size, each in scenes.items())
 
 
 # their results

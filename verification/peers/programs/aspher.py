@@ -11,10 +11,7 @@ import numpy as np
 
 from verification.peers import problems
 
-COARSEST = {
-    problems.HERTZ: 32,
-    problems.ROUGH: 64,
-}  # its coarsest grid has this many cells a side, or up to twice that
+COARSEST = {problems.HERTZ: 32, problems.ROUGH: 64}  # cells a side of its coarsest grid, or up to twice that
 
 
 def load() -> None:

@@ -20,9 +20,8 @@ def load() -> None:
 
 
 def versions() -> dict[str, str]:
-    return {
-        name: metadata.version(name) for name in ("ContactMechanics", "SurfaceTopography", "muGrid", "numpy")
-    }
+    names = "ContactMechanics", "SurfaceTopography", "muGrid", "numpy"
+    return {name: metadata.version(name) for name in names}
 
 
 def setup(problem: str, cells: int, settings: dict):

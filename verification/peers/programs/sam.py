@@ -27,12 +27,8 @@ def versions() -> dict[str, str]:
 def setup(problem: str, cells: Any, settings: dict):
     if problem == problems.STEP:
         return lambda: _step(*cells, **settings)
-    contact = problems.elastic(problem, cells, **_side(settings))
+    contact = problems.elastic(problem, cells, settings.get("side", problems.SIDE))
     return lambda: _elastic(contact, settings["tolerance"], periodic=settings.get("periodic", False))
-
-
-def _side(settings: dict) -> dict:
-    return {"side": settings["side"]} if "side" in settings else {}
 
 
 def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool):
@@ -55,9 +51,7 @@ def scene_of(
         body=Body(young=YOUNG, poisson=problems.POISSON, plasticity=hard),
         counterbody=CounterBody(shape="sphere", radius=problems.RADIUS * RADIUS_M),
         loading=Loading(force=problems.STEP_FORCE * YOUNG * RADIUS_M**2, steps=1, unload=False),
-        grid=Grid(
-            cells=(n, n), extent=(side * RADIUS_M, side * RADIUS_M), layers=layers, depth=depth * RADIUS_M
-        ),
+        grid=Grid(cells=(n, n), extent=(side * RADIUS_M,) * 2, layers=layers, depth=depth * RADIUS_M),
         solver=Solver(tolerance=tolerance),
     )
 

@@ -40,9 +40,8 @@ def _elastic(contact: problems.Elastic, tolerance: float, *, periodic: bool = Fa
     import tamaas
 
     kind = tamaas.PolonskyKeerRey.pressure
-    model = tamaas.ModelFactory.createModel(
-        tamaas.model_type.basic_2d, [contact.side] * 2, list(contact.gap.shape)
-    )
+    sides, cells = [contact.side] * 2, list(contact.gap.shape)
+    model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, sides, cells)
     model.E, model.nu = 1.0, 0.0
     solver = tamaas.PolonskyKeerRey(model, -contact.gap, tolerance, kind, kind)
     if not periodic:
@@ -66,9 +65,8 @@ def _step(n: int, layers: int, tolerance: float, contact_tolerance: float, *, re
     surface = -(x[:, None] ** 2 + x[None, :] ** 2) / (2 * problems.RADIUS)
     model = tamaas.ModelFactory.createModel(tamaas.model_type.volume_2d, [depth, side, side], [layers, n, n])
     model.E, model.nu = 1.0, problems.POISSON
-    material = tamaas.materials.IsotropicHardening(
-        model, sigma_y=problems.YIELD, hardening=problems.HARDENING
-    )
+    law = {"sigma_y": problems.YIELD, "hardening": problems.HARDENING}
+    material = tamaas.materials.IsotropicHardening(model, **law)
     plastic = DFSANECXXSolver(tamaas.Residual(model, material))
     plastic.tolerance = tolerance
     contact = tamaas.PolonskyKeerRey(model, surface, contact_tolerance)

@@ -27,9 +27,7 @@ TOLERANCE = "the tolerance of the scene"
 """Why a certificate has its bound. A solver stops as near to it as it can: such a comparison tells least of a
 cell."""
 COARSE = {SAM: "8 cells of equal pressure in the contact radius", FEM: "8 elements in the contact radius"}
-# compliance of a square punch over that of a disc of its area, inverse: King, Int. J. Solids Struct. 23
-# (1987) 1657
-KING = 1.012
+KING = 1.012  # compliance of a disc over that of a square of its area: Int. J. Solids Struct. 23 (1987) 1657
 
 
 @dataclass(frozen=True)
@@ -237,10 +235,8 @@ def as_twin(trial: Trial, words: str, reason: str, twin: Scene) -> list[Deviatio
 
 def pressed(name: str, force: float) -> Scene:
     """A plane pressed on heights of that name."""
-    surface = {"kind": "file", "path": name}
-    return scene_with(
-        {"counterbody": {"shape": "flat"}, "grid": "none", "loading.force": force, "surface": surface}
-    )
+    rough = {"counterbody": {"shape": "flat"}, "surface": {"kind": "file", "path": name}}
+    return scene_with(rough | {"grid": "none", "loading.force": force})
 
 
 def as_patch(trial: Trial, name: str) -> list[Deviation]:
@@ -293,12 +289,9 @@ def signs(trial: Trial) -> list[Deviation]:
 def stays_elastic(trial: Trial) -> list[Deviation]:
     """The largest von Mises stress of the elastic sphere, 0.28 E e/(1 - nu) but for the image."""
     body, misfit = trial.scene.body, trial.scene.loading.misfit
-    exact, reason = (
-        0.28 * body.young * misfit / (1.0 - body.poisson),
-        "8 cells in the radius, and the free surface",
-    )
+    pair = trial["mises_max_Pa"], 0.28 * body.young * misfit / (1.0 - body.poisson)
     return [
-        relative("largest von Mises stress", (trial["mises_max_Pa"], exact), 0.05, reason),
+        relative("largest von Mises stress", pair, 0.05, "8 cells in the radius, and the free surface"),
         Deviation("plastic strain", trial["peeq_max"], 1e-15, TOLERANCE),
     ]
 
@@ -306,9 +299,8 @@ def stays_elastic(trial: Trial) -> list[Deviation]:
 def square_punch(trial: Trial) -> list[Deviation]:
     """A square pressed by a plane: F = 2 beta E* sqrt(A/pi) approach (King 1987)."""
     exact = trial.scene.loading.force / (2 * KING * modulus_of(trial.scene) * SIDE / sqrt(pi))
-    return [
-        relative("approach, square punch", (trial["approach_m"], exact), 0.005, "32 cells along the side")
-    ]
+    pair = trial["approach_m"], exact
+    return [relative("approach, square punch", pair, 0.005, "32 cells along the side")]
 
 
 def warned(trial: Trial) -> list[Deviation]:
@@ -334,14 +326,11 @@ def all_touch(trial: Trial) -> list[Deviation]:
 def covers(trial: Trial) -> list[Deviation]:
     """The error of Hertz's pressure and approach is no larger than the uncertainty."""
     exact, found = contact_of(trial.scene), trial.result.uncertainty
-    shares = {
-        name: abs(trial[name] - value) / found[name]["u_num"]
-        for name, value in (("p_max_Pa", exact.peak_pressure), ("approach_m", exact.approach))
-    }
-    return [
-        Deviation(f"error of {name} over its uncertainty", share, 1.0, "what an uncertainty is")
-        for name, share in shares.items()
-    ]
+    deviations = []
+    for name, value in (("p_max_Pa", exact.peak_pressure), ("approach_m", exact.approach)):
+        share, what = abs(trial[name] - value) / found[name]["u_num"], f"error of {name} over its uncertainty"
+        deviations.append(Deviation(what, share, 1.0, "what an uncertainty is"))
+    return deviations
 
 
 def zero(trial: Trial) -> list[Deviation]:
@@ -356,7 +345,12 @@ def reached(trial: Trial) -> list[Deviation]:
     return [Deviation("uncertainty over accuracy", found["relative"] / found["asked"], 1.0, "as asked")]
 
 
-NONE = ("approach_m", "contact_area_m2", "p_max_Pa", "mises_max_Pa")
+def nothing(trial: Trial, names: str, reason: str) -> list[Deviation]:
+    """Quantities are 0."""
+    return [Deviation(f"{name}, which is 0", abs(trial[name]), 1e-300, reason) for name in names.split()]
+
+
+NONE = "approach_m contact_area_m2 p_max_Pa mises_max_Pa"
 CHECKS: Mapping[str, Check] = {
     "all-touch": all_touch,
     "balanced": balanced,
@@ -364,14 +358,10 @@ CHECKS: Mapping[str, Check] = {
     "carries": carries,
     "covers": covers,
     "flow": lambda trial: within_tolerance(trial, "yield_excess", "flow_residual"),
-    "frictionless": lambda trial: [
-        Deviation("sum of q over sum of p", abs(trial["friction_coefficient"]), 1e-300, "there is no q")
-    ],
+    "frictionless": lambda trial: nothing(trial, "friction_coefficient", "there is no q"),
     "mirrored": mirrored,
     "no yield beyond": lambda trial: within_tolerance(trial, "yield_excess"),
-    "nothing-touches": lambda trial: [
-        Deviation(f"{name} without force", abs(trial[name]), 1e-300, "nothing touches") for name in NONE
-    ],
+    "nothing-touches": lambda trial: nothing(trial, NONE, "nothing touches"),
     "reached": reached,
     "signs": signs,
     "square-punch": square_punch,
@@ -381,12 +371,8 @@ CHECKS: Mapping[str, Check] = {
     "zero": zero,
 }
 """Checks by the names that rows give them."""
-MADE: Mapping[str, Callable[..., list[Deviation]]] = {
-    "refinement": within_refinement,
-    "without": without,
-    "patch": as_patch,
-    "sum": as_sum,
-}
+MADE: Mapping[str, Callable[..., list[Deviation]]]
+MADE = {"refinement": within_refinement, "without": without, "patch": as_patch, "sum": as_sum}
 """Checks that rows name with what they are about; every other one is a comparison as `against` makes it."""
 
 

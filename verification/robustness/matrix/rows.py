@@ -80,11 +80,8 @@ def all_rows(level: str) -> list[Row]:
                 for shared in part.get("with", ()):
                     own |= table()["changes"][shared]
                 own |= {key: value for key, value in part.items() if key != "with"}
-            said = [
-                table()["expected"].get(each, [each]) if isinstance(each, str) else each
-                for each in rest
-                if not isinstance(each, dict)
-            ]
+            said = [each for each in rest if not isinstance(each, dict)]
+            said = [table()["expected"].get(each, [each]) if isinstance(each, str) else each for each in said]
             if len(said) == 1:
                 said *= 2
             elif said[0] == ["every"]:
@@ -143,11 +140,8 @@ def _wrong_result(checks: Sequence, trial: Trial) -> tuple[str, list[Deviation]]
     if broken:
         return f"not finite: {', '.join(broken)}", []
     try:
-        found = [
-            deviation
-            for said in checks
-            for deviation in check_of(named.get(said, said) if isinstance(said, str) else said)(trial)
-        ]
+        checks = [named.get(said, said) if isinstance(said, str) else said for said in checks]
+        found = [deviation for said in checks for deviation in check_of(said)(trial)]
     except (RuntimeError, ValueError) as error:
         return str(error), []
     beyond = [each for each in found if not each.share <= 1.0]

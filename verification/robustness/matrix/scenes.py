@@ -135,9 +135,7 @@ def fit_with(changes: Mapping[str, Any]) -> None:
         frame[name] *= factor
     for name, more in own.pop("plus", {}).items():
         frame[name] += more
-    frame, unknown = (
-        frame.rename(columns=own.pop("rename", {})),
-        own.pop("unknown", {"body.young": (1e11, 4e11)}),
-    )
+    frame = frame.rename(columns=own.pop("rename", {}))
+    unknown = own.pop("unknown", {"body.young": (1e11, 4e11)})
     tests = [own if own.get("kind") == "depth" else {"data": frame, **own}]
     definition_of({"scene": Scene.model_validate(BASE), "tests": tests, "unknown": unknown})

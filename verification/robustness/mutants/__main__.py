@@ -17,6 +17,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from verification.runs.threads import EVERY_LIBRARY
@@ -35,26 +36,19 @@ def check(modules: Sequence[str], files: Sequence[str], progress: Callable[[str,
     equivalent = [mutant for mutant in every if mutant.key in scope.constants("equivalent")]
     mutants = [mutant for mutant in every if mutant not in equivalent and scope.drawn(mutant)]
     rows, names, known = frozen.read(), {mutant.function for mutant in every}, set(scope.modules())
-    killers = {
-        test
-        for row in rows
-        if row["module"] in chosen or (row["module"] not in known and row["function"] in names)
-        for test in row["tests"]
-    }
+    moved = [row for row in rows if row["module"] not in known and row["function"] in names]
+    killers = {test for row in rows if row["module"] in chosen for test in row["tests"]}
+    killers |= {test for row in moved for test in row["tests"]}
     answer: dict = {}
 
     def work(items) -> None:
         start = time.monotonic()
         if not files:
-            items = {
-                name: item
-                for name, item in items.items()
-                if frozen.short(name) in killers or judge.uses(item.module, chosen)
-            }
-        seen, loaded, control = judge.observe(
-            chosen, items, lambda done, of: progress("tests observed", done, of)
-        )
-        judged = judge.judge(mutants, items, (seen, loaded), lambda done, of: progress("mutants", done, of))
+            wanted = {name for name, item in items.items() if judge.uses(item.module, chosen)}
+            wanted |= {name for name in items if frozen.short(name) in killers}
+            items = {name: item for name, item in items.items() if name in wanted}
+        seen, loaded, control = judge.observe(chosen, items, partial(progress, "tests observed"))
+        judged = judge.judge(mutants, items, (seen, loaded), partial(progress, "mutants"))
         answer.update(judged=judged, control=control, tests=len(seen), seconds=time.monotonic() - start)
 
     uncollected = judge.with_tests(files or ("test_*.py",), work)
@@ -66,18 +60,10 @@ def check(modules: Sequence[str], files: Sequence[str], progress: Callable[[str,
 
 def main() -> int:
     """Change what is asked for, and return the exit code."""
-    parser = argparse.ArgumentParser(
-        description="Change numbers, comparisons and conditions, each by itself, and ask the fast tests"
-    )
-    parser.add_argument(
-        "--module",
-        action="append",
-        default=[],
-        help="only this one, sam.contact.normal, say; may be repeated",
-    )
-    parser.add_argument(
-        "--tests", action="append", default=[], help="only this file of tests; may be repeated"
-    )
+    what = "Change numbers, comparisons and conditions, each by itself, and ask the fast tests"
+    parser, several = argparse.ArgumentParser(description=what), {"action": "append", "default": []}
+    parser.add_argument("--module", help="only this one, sam.contact.normal, say; may be repeated", **several)
+    parser.add_argument("--tests", help="only this file of tests; may be repeated", **several)
     parser.add_argument("--json", type=Path, help="file for the judgement of each mutant")
     parser.add_argument("--freeze", action="store_true", help="write what is found into frozen.csv")
     parser.add_argument("--processes", type=int, default=2)

@@ -25,11 +25,8 @@ MORE = 2
 HOOK = "_perturbed_number_"
 """Begins the names of `Number` in a rewritten module; one underscore: a class changes those with two."""
 NEIGHBOUR = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
-OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt} | {
-    one: other
-    for pair in ((ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn))
-    for one, other in (pair, pair[::-1])
-}
+OPPOSITE = {ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.Is: ast.IsNot, ast.In: ast.NotIn}
+OPPOSITE |= {other: one for one, other in OPPOSITE.items()}
 
 
 @dataclass(frozen=True)
@@ -104,9 +101,8 @@ class Number:
         return hash(self.value)
 
     def __array__(self, dtype=None, copy=None):
-        return np.array(
-            self.perturbed() if dtype is not None and np.dtype(dtype).kind in "fc" else self.value, dtype
-        )
+        beside_floats = dtype is not None and np.dtype(dtype).kind in "fc"
+        return np.array(self.perturbed() if beside_floats else self.value, dtype)
 
 
 def _method(operation: Callable, own: Callable, swapped: bool = False) -> Callable:
@@ -174,9 +170,8 @@ def _parts(node: ast.AST) -> Iterator[tuple[ast.AST, tuple, bool]]:
         yield from ((each, (), False) for each in defaults)  # evaluated where the function is made
         first = min([node.lineno, *(each.lineno for each in getattr(node, "decorator_list", ()))])
         scope = getattr(node, "name", "<lambda>"), first, arguments is not None
-        yield from (
-            (each, (scope,), False) for each in (node.body if isinstance(node.body, list) else [node.body])
-        )
+        body = node.body if isinstance(node.body, list) else [node.body]
+        yield from ((each, (scope,), False) for each in body)
     else:
         index = node.slice if isinstance(node, ast.Subscript) else None
         for child in node.values if isinstance(node, ast.Dict) else ast.iter_child_nodes(node):

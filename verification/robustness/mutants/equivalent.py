@@ -118,9 +118,8 @@ def change(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray]) ->
     worst = 0.0
     for name, values in before.items():
         unit = next((unit for unit in SHARES if name.endswith(unit)), "")
-        floor = (
-            max(SHARES[unit] * top for other, top in tops.items() if other.endswith(unit)) if unit else 0.0
-        )
+        alike = (top for other, top in tops.items() if other.endswith(unit))
+        floor = SHARES[unit] * max(alike) if unit else 0.0
         if (scale := max(tops[name], floor)) > 0:
             worst = max(worst, float(np.abs(np.nan_to_num(after[name] - values)).max(initial=0.0) / scale))
     return worst

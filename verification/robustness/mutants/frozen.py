@@ -19,10 +19,8 @@ def read() -> list[dict]:
     if not FILE.is_file():
         return []
     with FILE.open(encoding="utf-8", newline="") as lines:
-        return [
-            row | {name: json.loads(row[name]) for name in ("survivors", "tests")}
-            for row in csv.DictReader(lines)
-        ]
+        rows = list(csv.DictReader(lines))
+    return [row | {name: json.loads(row[name]) for name in ("survivors", "tests")} for row in rows]
 
 
 def short(test: str) -> str:
@@ -38,11 +36,8 @@ def rows(judged: Iterable[MutantVerdict]) -> list[dict]:
             functions[one.mutant.module, one.mutant.function].append(one)
     found = []
     for (module, function), ones in sorted(functions.items()):
-        kinds = Counter(
-            "numbers" if one.mutant.kind in NUMBERS else one.mutant.kind
-            for one in ones
-            if one.outcome == KILLED
-        )
+        killed = (one.mutant.kind for one in ones if one.outcome == KILLED)
+        kinds = Counter("numbers" if kind in NUMBERS else kind for kind in killed)
         counts = kinds["numbers"], kinds["comparison"], kinds["branch"]
         survivors = sorted(f"{one.mutant.kind} {one.mutant.text}" for one in ones if one.outcome == SURVIVED)
         tests = sorted({short(one.by) for one in ones if "::" in one.by})
@@ -92,9 +87,8 @@ def compare(
         if pool[text]:
             pool[text] -= 1
         else:
-            why = (
-                "new, or killed before" if known is not None else "of a function that the table does not have"
-            )
+            new = "of a function that the table does not have"
+            why = new if known is None else "new, or killed before"
             lost[mutant.name] = f"{mutant.text}: {why}"
     return lost, [
         f"{module}:{function or 'module'}, {row['numbers']} numbers, {row['comparisons']} comparisons and "

@@ -124,9 +124,8 @@ def with_tests(files: Sequence[str], work: Callable[[dict[str, pytest.Item]], No
     settings.register_profile("mutants", derandomize=True, database=None, phases=phases)
     settings.load_profile("mutants")
     words = "-s -o addopts= -p no:cacheprovider -p no:terminal --continue-on-collection-errors".split()
-    found = {
-        path for file in files for path in (inject.ROOT / "tests").rglob(file) if path.parent.name != "system"
-    }
+    paths = (path for file in files for path in (inject.ROOT / "tests").rglob(file))
+    found = {path for path in paths if path.parent.name != "system"}
     session = Session(work)
     code = pytest.main([*words, f"--rootdir={inject.ROOT}", *map(str, sorted(found))], plugins=[session])
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
@@ -204,9 +203,8 @@ def observe(
         finally:
             sys.settrace(None)
         own = {(code.co_filename, code.co_firstlineno) for code in called if code.co_filename in files}
-        return Seen(
-            passed, seconds, frozenset(own), frozenset(m for m, number in numbers.items() if number.met)
-        )
+        met = frozenset(mutant for mutant, number in numbers.items() if number.met)
+        return Seen(passed, seconds, frozenset(own), met)
 
     def all_of_them():
         numbers: dict = {}

@@ -26,9 +26,8 @@ CORE = {
     "sam.scene.surface": "counter",
     "sam.tribofilm": "law state",
     "fem_reference.axisymmetric": "misfit problem recovery",
-    "fem_reference.common": (
-        "back_stress contact elasticity hertz layered_force plasticity quadrilaterals recovery"
-    ),
+    "fem_reference.common": "back_stress contact elasticity hertz layered_force plasticity "
+    "quadrilaterals recovery",
     "fem_reference.spatial": "hexahedra problem",
     "verification.uncertainty": "rule",
 }
@@ -51,12 +50,10 @@ def core() -> list[str]:
 
 def modules() -> list[str]:
     """All modules that are changed."""
-    inside = [
-        f"{name}.{part.name}"
-        for name in AROUND
-        for part in pkgutil.iter_modules(getattr(import_module(name), "__path__", ()))
-    ]
-    single = [name for name in AROUND if not hasattr(import_module(name), "__path__")]
+    places = {name: getattr(import_module(name), "__path__", None) for name in AROUND}
+    single = [name for name, place in places.items() if place is None]
+    packages = {name: pkgutil.iter_modules(place) for name, place in places.items() if place is not None}
+    inside = [f"{name}.{part.name}" for name, parts in packages.items() for part in parts]
     return list(dict.fromkeys([*core(), *inside, *single]))
 
 
@@ -85,8 +82,5 @@ def mutants_of(module: str) -> list[Mutant]:
 def constants(which: str) -> dict[tuple[str, str, str], str]:
     """Key of a mutant -> the reason that `constants.csv` gives; which: "equivalent" or "explained"."""
     with Path(__file__).with_name("constants.csv").open(encoding="utf-8", newline="") as lines:
-        return {
-            (row["module"], row["function"], row["text"]): row["reason"]
-            for row in csv.DictReader(lines)
-            if row["list"] == which
-        }
+        rows = [row for row in csv.DictReader(lines) if row["list"] == which]
+    return {(row["module"], row["function"], row["text"]): row["reason"] for row in rows}
