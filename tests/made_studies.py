@@ -28,9 +28,9 @@ def verdicts(surfaces: Sequence[Mapping[str, History]]) -> list[dict]:
     return judged(measured(framed(runs, PARTS), ["surface"]))
 
 
-def over_inputs(**changed: History) -> Studied:
-    """As the paper says where the deviation of the layer is in the upper half, or `changed`; else no wear."""
-    shares, said, runs = design(UNIFORM, len(INPUTS), POINTS, 1), as_the_paper_says() | changed, {}
+def over_inputs() -> Studied:
+    """As the paper says where the deviation of the layer is in the upper half; else no wear."""
+    shares, said, runs = design(UNIFORM, len(INPUTS), POINTS, 1), as_the_paper_says(), {}
     deciding = [one.name for one in INPUTS].index("deviation")
     for point, case in np.ndindex(POINTS, len(NAMES)):
         name = list(NAMES)[case]
@@ -38,20 +38,15 @@ def over_inputs(**changed: History) -> Studied:
         if shares[point, deciding] < 0.5:
             own = history(0.0 * own.volume, 0.3, own.sa)
         runs[point, name, 7] = Run(scene_at(with_seed(SCENES[name], 7), shares[point]), result_of(own))
-    return studied(shares, runs)
-
-
-def studied(shares: np.ndarray, runs: Mapping[tuple, Run]) -> Studied:
     return Studied(framed(runs, PARTS), np.asarray(shares))
 
 
-def over_physics(**changed: History):
+def over_physics():
     """As the paper says under one physics; under the others nothing wears after the first cycle."""
-    said = as_the_paper_says() | changed
     runs = {
         (physics, name, 2): Run(SCENES[name], result_of(own if physics == GOOD else at_rest(own)))
         for physics in ALL
-        for name, own in said.items()
+        for name, own in as_the_paper_says().items()
     }
     return framed_physics(runs)
 

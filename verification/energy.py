@@ -189,11 +189,8 @@ def _balance(scene: Scene, grid: CellGrid, states: list[Committed]) -> Balance:
 def _moved(scene: Scene, grid: CellGrid, pressure: np.ndarray, friction: np.ndarray) -> np.ndarray:
     """(u_z, u_x) of the surface of the elastic body, (2, nx, ny) in m. Paper Eq. 5."""
     body, whole = scene.body, Window(0, 0, grid.nx, grid.ny)
-    bodies, mu, lags = (
-        sam.plan(scene).bodies,
-        body.young / (2 * (1 + body.poisson)),
-        Convolution.lags_needed(whole, whole),
-    )
+    bodies, lags = sam.plan(scene).bodies, Convolution.lags_needed(whole, whole)
+    mu = body.young / (2 * (1 + body.poisson))
     out = np.zeros((2, grid.nx, grid.ny))
     for row, component in enumerate((3, 1)):
         for load, field in ((3, pressure), (1, friction)):

@@ -207,15 +207,8 @@ def evaluate(
 
 def _without_row(case: str, name: str, measured: Measured) -> Verdict:
     """A value that no row asks for: forgotten in the file of the case or misspelt, and red either way."""
-    row = Row.model_construct(
-        id=name,
-        case=case,
-        quantity=name,
-        metric="none",
-        tolerance=0.0,
-        reason="no row of its case",
-        kind="bound",
-    )
+    said = {"metric": "none", "tolerance": 0.0, "reason": "no row of its case", "kind": "bound"}
+    row = Row.model_construct(id=name, case=case, quantity=name, **said)
     note = f"case {case} returned a value that has no gate"
     value = _scalar(measured.value, measured)
     return Verdict(row, RowStatus.FAILED, value=value, unit=measured.unit, note=note)

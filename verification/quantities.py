@@ -426,6 +426,11 @@ def of_passes(result: Result, name: str) -> np.ndarray:
     return np.asarray(result.tables[table][column], dtype=float)
 
 
+def of_cycles(result: Result, column: str) -> np.ndarray:
+    """A column of the table of cycles."""
+    return np.asarray(result.tables["cycles"][column], dtype=float)
+
+
 def _counted(solved: Solved) -> np.ndarray:
     """Which passes strain more than the floor of the verdict, in all runs of both models."""
     runs = solved.results.values()

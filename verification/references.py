@@ -138,10 +138,8 @@ def hertz_ellipse(scene: Scene) -> Reference:
 
 def flat_punch(scene: Scene) -> Reference:
     """Boussinesq (1885), Sneddon (1946); the pressure to 0.8 a, as it is unbounded at the edge."""
-    exact, nu = (
-        FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene)),
-        scene.body.poisson,
-    )
+    exact = FlatPunch(scene.loading.force, scene.counterbody.radius, modulus_of(scene))
+    nu = scene.body.poisson
     centre, inside = float(exact.pressure(0.0)), 0.8 * exact.contact_radius
     return _pressed(exact, lambda z: exact.axis_stress(z, nu), {"p-center": centre}, p0=centre, inside=inside)
 

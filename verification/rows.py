@@ -10,9 +10,8 @@ equation "name" in equations.toml.
 
 Where a case has tables `[sweeps.NAME]`, the last entry of a row of a kind alone says what it takes of their
 points, see `Take`: `"order p-max of sam"`, `"share of fem at depth = 3"`, `"limit peeq-max of sam | of fem"`
-with what it is held against; without words that says what it is, in those of
-`[words]`. Points that need more than axes are what a
-function returns, `frame = "NAME"`.
+with what it is held against; without words that says what it is, in those of `[words]`. Points that need more
+than axes are what a function returns, `frame = "NAME"`.
 """
 
 from __future__ import annotations
@@ -168,27 +167,25 @@ class SweepFile(BaseModel):
 class CaseFile(BaseModel):
     """A case as its file says it.
 
-    equations: (what, formula, source) of the independent answer; levels: at which of LEVELS it runs,
-    none: only when it is named. Without `scene` the module of the same name in its folder measures it;
-    with one:
+    equations: (what, formula, source) of the independent answer; levels: at which of LEVELS it runs, none:
+    only when it is named. Without `scene` the module of the same name in its folder measures it; with one:
 
-    scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI;
-    vary: recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that
-    level; models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge;
-    variants: name -> {words, set, vary} of the scene, each solved and measured by itself if rows name it;
-    values: quantity -> the number that it is held against; reference: an independent answer, a name in
+    scene: of `verification/scenes`; set: key of the scene, as `loading.force` -> its value here, in SI; vary:
+    recipe of `verification.cases.recipes` -> its value; quick: `set` and `vary` that differ at that level;
+    models: that solve it; runs: name -> {model, set, vary}, beside these, which need not converge; variants:
+    name -> {words, set, vary} of the scene, each solved and measured by itself if rows name it; values:
+    quantity -> the number that it is held against; reference: an independent answer, a name in
     `verification.references`; figures: kinds of `verification.cases.kinds`; claims: its rows; sweeps: its
     points beside the scene itself; setting: (name, number with unit) for the reader; notes: sentences below
     the tables; views: pictures in space; labels: what figures say of a column, with the unit in which it is
     drawn, of an axis ("{}": its value) or of a single value; captions: of figures, by their names.
 
-    frame: function beside the file that returns the points instead of sweeps; of such functions, tables:
-    that return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the
-    case does not run here. alone: it measures times, so that nothing runs beside it and a later run
-    measures again.
+    frame: function beside the file that returns the points instead of sweeps; of such functions, tables: that
+    return one of the frame; data: that hands numbers of it to the pages; cannot: that says why the case does
+    not run here. alone: it measures times, so that nothing runs beside it and a later run measures again.
 
-    allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from
-    both models at the `coarser` resolution.
+    allowance: rows of SAM against FEM that hold the difference over what refinement allows, known from both
+    models at the `coarser` resolution.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)

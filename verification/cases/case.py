@@ -6,6 +6,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -105,14 +106,13 @@ class NotDrawnError(Exception):
 class Case:
     """A verification case: one question, and the parts of its answer.
 
-    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part
-    gets what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves
-    the figures.
+    A new case is a subclass that defines `solve` and `measure`, and what else it has to show. Each part gets
+    what `solve` returned; the harness, `run`, calls them, prefixes the ids of the gates and saves the
+    figures.
 
-    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it
-    runs, none: only when it is named; file: that says so; needs: why it cannot run here and what to do,
-    empty if it can; alone: whether it measures times, so that nothing runs beside it and a later run
-    measures again.
+    equations: (what, formula, source) as used for the independent answer; levels: at which of LEVELS it runs,
+    none: only when it is named; file: that says so; needs: why it cannot run here and what to do, empty if it
+    can; alone: whether it measures times, so that nothing runs beside it and a later run measures again.
     """
 
     name: str
@@ -278,19 +278,10 @@ class Context:
         return seen, []
 
 
-def with_body(scene: Scene, **keys) -> Scene:
-    """The scene with other keys in its [body]."""
-    return with_keys(scene, "body", **keys)
-
-
-def with_grid(scene: Scene, **keys) -> Scene:
-    """The scene with other keys in its [grid]."""
-    return with_keys(scene, "grid", **keys)
-
-
-def with_loading(scene: Scene, **keys) -> Scene:
-    """The scene with other keys in its [loading]."""
-    return with_keys(scene, "loading", **keys)
+with_body, with_grid, with_loading = (
+    partial(with_keys, section=name) for name in ("body", "grid", "loading")
+)
+"""(scene, keys) -> the scene with other keys in that section."""
 
 
 def with_mesh(scene: Scene, cells_per_radius: int) -> Scene:

@@ -182,11 +182,10 @@ def given_tractions(scene: Scene, friction: float) -> Scene:
     return scene.model_copy(update=changed)
 
 
-def even_depths(scene: Scene, deepest: float, count: int = 81) -> Scene:
-    """Output depths from 0 to `deepest` radii of a given pressure."""
-    return with_grid(
-        scene, depths=tuple(float(z) * scene.loading.radius for z in np.linspace(0, deepest, count))
-    )
+def even_depths(scene: Scene, deepest: float) -> Scene:
+    """81 output depths from 0 to `deepest` radii of a given pressure."""
+    depths = scene.loading.radius * np.linspace(0, deepest, 81)
+    return with_grid(scene, depths=tuple(map(float, depths)))
 
 
 WAY, PASS_STEPS, PASS_CELLS = 2.0, 20, 6  # half of the way in radii, its steps, cells in the radius

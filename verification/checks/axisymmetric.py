@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from skfem import LinearForm, asm
 
-from fem_reference import Model, Step, load_steps
-from sam.scene import Checkpoint, Scene
+from fem_reference import Model, Step
+from sam.scene import Scene
 from verification.checks.conditions import planes, tractions
 from verification.checks.material import back_stress, elastic_stress, flow_of, limit_of, von_mises
 
@@ -136,8 +136,3 @@ class Finite(Formed):
             r, szz = self.r[here][order], self.stress[2][here][order]
             errors.append(planes(r, np.array([depth]), szz[:, None], self.state.force, spread=spread)[0])
         return depths, np.array(errors)
-
-
-def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> tuple[Model, list[Step]]:
-    """The model of a scene and its steps, of the last record, taken again where there is none."""
-    return load_steps(scene, records[-1] if records else None)

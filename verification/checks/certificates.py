@@ -6,6 +6,7 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from fem_reference import load_steps
 from sam import choose_grid
 from sam.scene import Attempt, Result, Scene
 from verification.checks import (
@@ -67,7 +68,7 @@ def of_coated(scene: Scene, result: Result, _records: list) -> dict[str, float]:
 def of_fem(scene: Scene, result: Result, records: list) -> dict[str, float]:
     """All conditions of the axisymmetric FEM; an elastic body hands out no steps: they are taken again."""
     values = common(scene, result)
-    model, steps = fem_checks.steps_of(scene, records)
+    model, steps = load_steps(scene, records[-1] if records else None)
     finite = [fem_checks.Finite(scene, model, step) for step in steps]
     last = [each for each, step in zip(finite, steps, strict=True) if not step.unloads][-1]
     values = larger(values, last.equilibrium())

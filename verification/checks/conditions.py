@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
+from scipy.integrate import simpson
 
 from sam.scene import COUNTER_HEIGHT, Checkpoint, Result, Scene
 from verification.checks.material import back_stress, fields_at_points, flow_of, von_mises, yield_stress
@@ -53,7 +54,7 @@ def load(scene: Scene, result: Result) -> float:
     else:
         line = peak_rows(result, "line")
         r, p = line["x_m"], line["p_Pa"]
-        total = (simpson_rings(r) * p)[1:].sum()
+        total = simpson(2.0 * np.pi * r * p, x=r)  # of nodal pressures on quadratic edges
     return max(abs(float(total) / force - 1.0), missed_approach(scene, result), -float(p.min() / p.max()))
 
 
@@ -66,16 +67,6 @@ def missed_approach(scene: Scene, result: Result) -> float:
     """How far the approach of a result is off the given one, over that; 0 where none is given."""
     given = scene.loading.approach
     return 0.0 if given is None else abs(result.quantities["approach_m"] / given - 1.0)
-
-
-def simpson_rings(r: np.ndarray) -> np.ndarray:
-    """Weights of nodal ring pressures on quadratic edges: Simpson's rule of 2 pi r p."""
-    weight = np.zeros_like(r)
-    width = r[2::2] - r[:-2:2]
-    for first, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
-        stop = r.size - 2 + first
-        weight[first:stop:2] += 2.0 * np.pi * r[first:stop:2] * share * width / 6.0
-    return weight
 
 
 def complementarity(scene: Scene, result: Result) -> float:
@@ -221,11 +212,10 @@ def at_points(scene: Scene, stress: np.ndarray, strain: np.ndarray) -> np.ndarra
 
 
 def planes(r: np.ndarray, z: np.ndarray, szz: np.ndarray, force: float, *, spread: float) -> np.ndarray:
-    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r,
-    ascending from near zero. Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of
-    a point force (Johnson 1985, Eq. 3.19), and of the mean square distance `spread` of the pressure
-    from the axis the first term, spread/4 times the flux through r = R of the gradient of that
-    stress.
+    """Force through the planes z = const over the load less 1, (nz,): szz (nr, nz) at radii r, ascending from
+    near zero. Trapezoidal sums of 2 pi r szz; beyond the last radius R the stress of a point force (Johnson
+    1985, Eq. 3.19), and of the mean square distance `spread` of the pressure from the axis the first term,
+    spread/4 times the flux through r = R of the gradient of that stress.
     """
     inside = -2 * np.pi * np.trapezoid(szz * r[:, None], r, axis=0) - np.pi * r[0] ** 2 * szz[0]
     reach = np.hypot(r[-1], z)
@@ -243,9 +233,8 @@ def sam_planes(scene: Scene, result: Result) -> np.ndarray:
 
 
 def sam_surface(_scene: Scene, result: Result) -> float:
-    """Tractions below the surface against those on it, over the largest pressure; from the first
-    two depths, linearly. Away from the edge of contact, see EDGE. With friction the shear stress
-    against q = mu p.
+    """Tractions below the surface against those on it, over the largest pressure; from the first two depths,
+    linearly. Away from the edge of contact, see EDGE. With friction the shear stress against q = mu p.
     """
     x, z, stress = plane_of(result)
     line = peak_rows(result, "line")

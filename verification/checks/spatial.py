@@ -104,10 +104,9 @@ def steps_of(scene: Scene, records: Sequence[Checkpoint]) -> list[Spatial]:
 
 
 def surface(scene: Scene, result: Result) -> dict[str, float]:
-    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q =
-    mu p on the line y = 0. The gap is that of the shapes + uz - approach, of a rough body with the
-    returned heights; without force that on y = 0 as returned. A node has a quarter of each face
-    around it.
+    """Of the returned nodes z = 0: sum of p over the load less 1, tension; p gap = 0, gap >= 0; q = mu p on
+    the line y = 0. The gap is that of the shapes + uz - approach, of a rough body with the returned heights;
+    without force that on y = 0 as returned. A node has a quarter of each face around it.
     """
     top = result.fields.points[:, 2] == 0.0
     x, y, _ = result.fields.points[top].T

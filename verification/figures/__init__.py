@@ -34,14 +34,3 @@ drawings_of_run: Callable[..., dict[str, Any]] = _late("run", "drawings_of")
 sensitivity_figure = _late("specials", "sensitivity_figure")
 solve_figures = _late("run", "draw_run")
 sweep_figure = _late("sweep", "sweep_figure")
-
-__all__ = [
-    "compare_figures",
-    "drawing_of_fit",
-    "drawing_of_sweep",
-    "drawings_of_comparison",
-    "drawings_of_run",
-    "sensitivity_figure",
-    "solve_figures",
-    "sweep_figure",
-]

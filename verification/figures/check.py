@@ -29,6 +29,7 @@ TOUCH = 0.2
 FEW = 8
 """Colours of a map that a legend may name instead of a colour bar."""
 _RAW = re.compile(r"[^\W\d_]+_\w")
+_FORMULA = re.compile(r"\$[^$]*\$")
 COUNTS = re.compile(r"(cycle|iteration|load step|pass\b|passes|period)", re.IGNORECASE)
 """Begins the label of an axis of whole numbers."""
 _NUMBER = re.compile(r"[-+\N{MINUS SIGN}]?[\d.]+")
@@ -90,7 +91,9 @@ def _of_texts(figure: Figure, panels: list[Axes]) -> Iterator[str]:
     whole = figure.bbox.extents
     out = np.any([boxes[:, :2] < whole[:2], boxes[:, 2:] > whole[2:]], axis=(0, 2))
     yield from (f"the text '{words[k]}' leaves the sheet" for k in np.flatnonzero(out))
-    yield from (f"'{text}' is the name of a variable" for text in words if _RAW.search(_plain(text)))
+    yield from (
+        f"'{text}' is the name of a variable" for text in words if _RAW.search(_FORMULA.sub("", text))
+    )
     (x0, y0, x1, y1), gap = boxes.T, APART * np.minimum.outer(sizes, sizes)
     across = np.minimum.outer(x1, x1) - np.maximum.outer(x0, x0) > -gap
     height = np.minimum.outer(y1 - y0, y1 - y0)
@@ -109,11 +112,6 @@ def _of_texts(figure: Figure, panels: list[Axes]) -> Iterator[str]:
     yield from (f"'{title}' does not say of what" for title in titles if _NUMBER.fullmatch(title.strip()))
 
 
-def _plain(text: str) -> str:
-    """Without what is set as a formula."""
-    return re.sub(r"\$[^$]*\$", "", text)
-
-
 def _legends(figure: Figure, panels: Iterable[Axes]) -> list[Legend]:
     return [each for part in (figure, *panels) for each in part.findobj(Legend) if each.get_visible()]
 
@@ -126,14 +124,10 @@ def _of_ticks(panel: Axes) -> Iterator[str]:
         shared = getattr(panel, f"get_shared_{axis.axis_name}_axes")().get_siblings(panel)
         hidden = not words and (len(shared) > 1 or not len(axis.get_majorticklocs()))
         title = panel.get_title() or axis.get_label_text() or "a colour bar"
-        if len(words) < 2 and not hidden and not any(map(_is_name, words)):
+        if len(words) < 2 and not hidden and all(map(_NUMBER.search, words)):
             yield f"the {name} axis of '{title}' has fewer than two numbers"
         if COUNTS.match(axis.get_label_text()) and any("." in word for word in words):
             yield f"the {name} axis of '{title}' counts and has broken numbers"
-
-
-def _is_name(word: str) -> bool:
-    return not _NUMBER.search(word)
 
 
 def _of_lines(figure: Figure, panels: list[Axes]) -> Iterator[str]:

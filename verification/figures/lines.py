@@ -39,15 +39,9 @@ LOOKS = {
     "SAM, paper": {"color": ORANGE, "linewidth": 1.5, "linestyle": ":"},
 }
 """The look of FEM and of each form of SAM, where FEM is the reference."""
+HOLLOW = {"markersize": 4, "fillstyle": "none", "linewidth": 1.2}
 CYCLES = tuple(
-    {
-        "color": color,
-        "marker": marker,
-        "markersize": 4,
-        "fillstyle": "none",
-        "linewidth": 1.2,
-        "linestyle": line,
-    }
+    {"color": color, "marker": marker, "linestyle": line} | HOLLOW
     for color, marker, line in zip(
         (BLUE, VERMILION, GREEN, ORANGE, PURPLE, BLACK), "os^Dvx", cycle(("-", "--")), strict=False
     )
@@ -222,35 +216,6 @@ PLAIN = {"marker": "", "linestyle": "-", "linewidth": 1.4}
 """Of a curve of many points."""
 
 
-PROGRAMS = {
-    "SAM": {"color": BLUE, "marker": "o"},
-    "Tamaas": {"color": VERMILION, "marker": "s"},
-    "ContactMechanics": {"color": GREEN, "marker": "^"},
-    "aspher": {"color": ORANGE, "marker": "D"},
-}
-DASHES = ("-", "--", ":")
-"""First, second and third curve of a program."""
-
-
-def of_programs(
-    series: Mapping[str, tuple[str, np.ndarray, np.ndarray]],
-    xlabel: str,
-    ylabel: str,
-    *,
-    target: float | None = None,
-    floor: float = 0.0,
-) -> Drawing:
-    """Label -> (program, x, y), coarse to fine; target: of stated times; floor: shaded, no claims below."""
-    seen, looks = dict.fromkeys(PROGRAMS, 0), {}
-    for label, (program, _, _) in series.items():
-        looks[label] = PROGRAMS[program] | {"linestyle": DASHES[seen[program] % 3], "fillstyle": "none"}
-        seen[program] += 1
-    marks = {} if target is None else {"error whose times are compared": ("y", target)}
-    how = {"logarithmic": "xy", "marks": marks, "floor": floor, "size": (8.4, 4.2)}
-    drawn = {label: Curve(x, y) for label, (_, x, y) in series.items()}
-    return curves({"": drawn}, xlabel, ylabel, looks=looks, **how)
-
-
 LINE_ON_POINTS = {
     "SAM": SAM,
     "FEM": FEM | {"linestyle": "none", "marker": "o", "markersize": 4.0, "fillstyle": "none"},
@@ -270,22 +235,6 @@ def yield_profiles(cases: Mapping[str, Callable[[np.ndarray, float], np.ndarray]
     }
     drawing = curves(drawn, "depth $z$ [µm]", "yield stress [GPa]", size=(4.5, 3.6))
     drawing.figure.axes[0].set_ylim(0.0, None)
-    return drawing
-
-
-def over_cells(volumes: Mapping[str, Mapping[float, Sequence[float]]], default: float) -> Drawing:
-    """A line for each surface through the means, with bars from the smallest to the largest. volumes: name of
-    a surface -> cells in the shortest wave -> volumes in um3 of the surface shifted against the cells;
-    default: the cells in the shortest wave that are recommended, marked by a line.
-    """
-    drawn = {}
-    for name, of_cells in volumes.items():
-        mean, *ends = (np.array([of(each) for each in of_cells.values()]) for of in (np.mean, min, max))
-        drawn[name] = Curve(np.array(list(of_cells)), mean, ends=tuple(ends))
-    marks, xlabel = {"recommended": ("x", default)}, "cells in the shortest wave of the surface"
-    how = {"logarithmic": "x", "marks": marks, "size": (6.2, 3.6)}
-    drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
-    drawing.figure.axes[0].set_ylim(bottom=0.0)
     return drawing
 
 

@@ -67,7 +67,8 @@ class FieldPair:
         u, v = np.meshgrid(self.u, self.v, indexing="ij")
         shown = (np.nan_to_num(self.first) != 0.0) | (np.nan_to_num(self.second) != 0.0)
         names, fields = (*self.axes, *self.names), (u, v, self.first, self.second)
-        return {_plain(name): field[shown] for name, field in zip(names, fields, strict=True)}
+        plain = (name.replace("$", "").replace(" ", "_") for name in names)  # without mathtext
+        return {name: field[shown] for name, field in zip(plain, fields, strict=True)}
 
 
 @dataclass(frozen=True)
@@ -82,11 +83,6 @@ class MapPeak:
     def said(self, depth: str, unit: str) -> MapPeak:
         """With its value and its depth in words; depth: label of the axis."""
         return replace(self, words=f"max {self.value:#.4g}{unit} at {depth} = {self.v:.3f}")
-
-
-def _plain(label: str) -> str:
-    """A label without mathtext, for a column name."""
-    return label.replace("$", "").replace(" ", "_")
 
 
 def pressure_maps(pair: FieldPair) -> Drawing:
@@ -249,7 +245,7 @@ def mark_interface(axes: Sequence[Axes], depth: float, across: bool = False) -> 
 PRESSURE, STRAIN = "contact pressure $p/p_0$", "plastic strain [%]"
 VON_MISES = r"von Mises stress $\sigma_\mathrm{vM}/p_0$"
 SURFACE_AXES, PLANE_AXES = ("$x/a$", "$y/a$"), ("$x/a$", "$z/a$")
-PERCENT, MICRO, GIGA = 1e2, 1e6, 1e-9
+MICRO, GIGA = 1e6, 1e-9
 LINE = 0.2  # %: the proof strain of tensile tests
 
 

@@ -189,11 +189,7 @@ def plane_of(run: Run, section: Section, column: str) -> tuple[np.ndarray, np.nd
     if section.source == "body":
         x, y, z, values = _cells_of(run)
         return gridded(*(each[y == section.y] for each in (x, z, values)))
-    x, z, values = peak(run.tables[section.source], "x_m", "z_m", column)
-    (xs, i), (zs, k) = (np.unique(c, return_inverse=True) for c in (x, z))
-    field = np.full((xs.size, zs.size), np.nan)
-    field[i, k] = values
-    return xs, zs, field
+    return gridded(*peak(run.tables[section.source], "x_m", "z_m", column))
 
 
 def _axisymmetric_plane(run: Run, column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -19,7 +19,8 @@ from sam.scene import Progress
 from verification.compare.running_in_measures import History, Scar
 from verification.cost.contact import hertz_of
 from verification.figures import repeated
-from verification.figures.lines import INTO, Curve, curves
+from verification.figures.compared import PANELS
+from verification.figures.lines import Curve, curves
 from verification.figures.maps import INTERFACE, mark_interface
 from verification.figures.places import (
     Section,
@@ -134,9 +135,8 @@ def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
             found["height [$\\mu$m]"] = MICRO * height[:, row]
         horizontal += f" at $y$ = {MICRO * section.y:.4g} $\\mu$m"
     else:
-        wanted = {"pressure [GPa]": ("p_Pa", GIGA), INTO: ("uz_m", MICRO), gap: ("gap_m", MICRO)}
-        x = peak(run.tables["line"], "x_m")[0]
-        found = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in wanted.items()}
+        x, of = peak(run.tables["line"], "x_m")[0], PANELS["line"]
+        found = {label: unit * peak(run.tables["line"], name)[0] for label, (name, unit) in of.items()}
         least = NOTHING * MICRO * abs(run.quantities["approach_m"] or 0.0)
         if not (np.isfinite(found[gap]) & (np.abs(found[gap]) > least)).any():
             del found[gap]
@@ -151,12 +151,7 @@ def line(run: Run, surface: SurfaceMap | None, section: Section) -> Drawing:
 
 def axis(run: Run, section: Section) -> Drawing:
     """Stresses under the largest pressure; a gap in the curves, and a line, where a coating ends."""
-    columns = {
-        "$\\sigma_{zz}$ [GPa]": "szz_Pa",
-        "$\\sigma_{xx}$ [GPa]": "sxx_Pa",
-        "von Mises [GPa]": "mises_Pa",
-    }
-    found = {label: below(run, section, column) for label, column in columns.items()}
+    found = {label: below(run, section, column) for label, (column, _) in PANELS["axis"].items()}
     reach = 2.0 * contact_size(run.quantities) if section.source == "plane" else np.inf
     found = {label: (MICRO * z[z <= reach], GIGA * v[z <= reach]) for label, (z, v) in found.items()}
     horizontal = "$z$ [$\\mu$m]"

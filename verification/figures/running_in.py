@@ -50,14 +50,10 @@ def six_panels(scar: Scar, history: History, friction: tuple[float, float]) -> D
         over_cycles.set(title="(d) friction, this surface", ylabel="coefficient of friction")
         over_cycles.set_ylim(friction[0] - room, friction[1] + room)
         _local_friction(local, scar, friction)
-    return Drawing(figure, _columns(scar, worn_m=scar.worn, p_Pa=scar.p, friction=scar.friction))
-
-
-def _columns(scar: Scar, **more: np.ndarray) -> dict[str, np.ndarray]:
-    """One row a cell; the cycles are in cycles.csv of the run. more: columns beside places and heights."""
-    x, y = np.meshgrid(scar.x, scar.y, indexing="ij")
-    fields = {"x_m": x, "y_m": y, "height_m": scar.height, **more}
-    return {name: field.ravel() for name, field in fields.items()}
+    x, y = np.meshgrid(scar.x, scar.y, indexing="ij")  # a row a cell; the cycles are in cycles.csv of the run
+    fields = {"x_m": x, "y_m": y, "height_m": scar.height, "worn_m": scar.worn, "p_Pa": scar.p}
+    fields["friction"] = scar.friction
+    return Drawing(figure, {name: field.ravel() for name, field in fields.items()})
 
 
 def _ends(places: np.ndarray) -> tuple[float, float]:

@@ -19,7 +19,6 @@ from verification.figures.style import (
     BLACK,
     BLUE,
     GREEN,
-    GUIDE,
     ORANGE,
     RC,
     VERMILION,
@@ -68,23 +67,6 @@ def agreement(pairs: Sequence[tuple[str, str, float, float, str, str]]) -> Drawi
 
 def _signed(value: float, unit: str = "") -> str:
     return f"{value:+g}{unit}".replace("-", "\N{MINUS SIGN}") if value else "0"
-
-
-def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
-    """A bar with bounds for each statement. rows: words, points at which it holds, of how many, bounds."""
-    table = Columns("statement", "holds", "of", "low", "high")
-    names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
-    low, high = np.array(bounds).T
-    with sheet(7.2, 0.8 + 0.24 * len(names)) as (figure, axis):
-        _bars(axis, names, np.array(held) / np.maximum(of, 1), (low, high), color="#9fc8e3")
-        for k, (yes, every) in enumerate(zip(held, of, strict=True)):
-            place = {"va": "center", "fontsize": 8.0, "transform": axis.get_yaxis_transform()}
-            axis.text(1.02, k, f"{yes} of {every}", **place)
-        axis.axvline(0.5, color=BLACK, linewidth=0.6, gid=GUIDE)
-        label = "share of points at which the statement holds"
-        axis.set(xlabel=label, xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
-    table.add(names, held, of, low, high)
-    return Drawing(figure, table)
 
 
 SHOWN = {

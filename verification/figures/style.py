@@ -25,14 +25,8 @@ from verification.runs.model_range import OUTSIDE, outside_in_words, outside_of_
 from verification.runs.tables import csv_text
 
 # Okabe & Ito (2008), distinguishable with every common colour vision deficiency.
-BLACK, ORANGE, BLUE, GREEN, VERMILION, PURPLE = (
-    "#000000",
-    "#E69F00",
-    "#0072B2",
-    "#009E73",
-    "#D55E00",
-    "#CC79A7",
-)
+BLACK, ORANGE, BLUE = "#000000", "#E69F00", "#0072B2"
+GREEN, VERMILION, PURPLE = "#009E73", "#D55E00", "#CC79A7"
 SAM = {"color": BLUE, "linestyle": "-", "linewidth": 1.6}
 FEM = {"color": VERMILION, "linestyle": "--", "linewidth": 1.6}
 EXACT = {"color": BLACK, "linestyle": ":", "linewidth": 1.6}

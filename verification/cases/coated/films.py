@@ -131,13 +131,8 @@ def at_limits(context: Context) -> Iterator[dict[str, Any]]:
         how = {"counter": COUNTER[other], "limit": limit, "change": CHANGES[name]}
         radius = PAPER_FILM / breaking_thickness(PAPER_RATIO, **how)
         scene = film_under(base, (other, radius, PAPER_FILM, PAPER_RATIO))
-        row = {
-            "sweep": "limits",
-            "counterbody": other,
-            "of": name,
-            "limit": limit,
-            "radius [µm]": 1e6 * radius,
-        }
+        row = {"sweep": "limits", "counterbody": other, "of": name, "limit": limit}
+        row["radius [µm]"] = 1e6 * radius
         for model in BOTH:
             label = f"{model}-{other}-{name}-{100 * limit:g}"
             found = changes_of(context.solve(BOTH[model], scene, label))[name]
@@ -214,8 +209,4 @@ def grids(context: Context) -> Iterator[dict[str, Any]]:
         pairs = zip(changes_of(both[0]).items(), changes_by_film(scenes[name]), strict=True)
         row |= {change: abs(found - exact) for (change, found), exact in pairs}
         yield row | {"unfinished": sum(map(unfinished, both))}
-    yield {
-        "sweep": "parts",
-        "displacement": error_of_parts("displacement"),
-        "stress": error_of_parts("stress"),
-    }
+    yield {"sweep": "parts"} | {kind: error_of_parts(kind) for kind in ("displacement", "stress")}

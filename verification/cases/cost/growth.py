@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from verification.cases.case import FEM_3D, Context, DataFrame, Plot, SmallTable
+from verification.cases.case import FEM_3D, Context, DataFrame, Plot
 from verification.cost import growth
 from verification.figures.lines import Curve, curves
-from verification.reference.convergence import Power, fit_power
+from verification.reference.convergence import fit_power
 from verification.rows import CaseFile
-
-__all__ = ["exponents"]  # named by the file of the case
 
 ERROR = 1e-4  # of the stress/mu of a unit strain by sweeps
 BOXES = {
@@ -71,29 +69,12 @@ def exponent(rows: DataFrame, column: str) -> float:
     return fit_power(rows["size"], rows[column]).exponent
 
 
-def powers(frame: DataFrame) -> dict[str, Power]:
-    """What grows -> its power."""
-    ladders = {name: frame[frame["sweep"] == name] for name in frame["sweep"].unique()}
-    return {
-        what: fit_power(ladders[name]["size"], ladders[name][column], first)
-        for what, (name, column, first) in EXPONENTS.items()
-    }
-
-
-def exponents(frame: DataFrame) -> SmallTable:
-    """Every exponent of processor time."""
-    rows = [
-        (what, f"{power.first:.0f}", f"{power.last:.0f}", str(power)) for what, power in powers(frame).items()
-    ]
-    return SmallTable("Exponents of processor time", ("what", "from", "to", "exponent"), rows)
-
-
 def times(file: CaseFile, frame: DataFrame) -> Plot:
     """Over the size, a panel for each exponent."""
     panels, sizes = {}, {}
-    for what, power in powers(frame).items():
-        (ladder, column, _), (title, _, sizes[title]) = EXPONENTS[what], what.rpartition(", in ")
-        own = frame[frame["sweep"] == ladder]
+    for what, (ladder, column, first) in EXPONENTS.items():
+        own, (title, _, sizes[title]) = frame[frame["sweep"] == ladder], what.rpartition(", in ")
+        power = fit_power(own["size"], own[column], first)
         values, ends = own[column].to_numpy(dtype=float), (power.first, power.last)
         panels[title] = {f"exponent {power}": Curve(own["size"].to_numpy(), values, power, span=ends)}
     how = {"logarithmic": "xy", "legend": "each", "size": (3.2, 2.7)}

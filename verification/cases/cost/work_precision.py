@@ -116,7 +116,11 @@ def with_errors(problem: Problem, scene: Scene, rows: Sequence[dict[str, Any]]) 
     nan where there is no answer; with the uncertainty of the references as `floor`, below which no error is
     claimed; and with what the advice calls a resolution of 1, its name and size.
     """
-    references = {"resolution": references_of(problem, scene, rows)}
+    if problem.exact is None:
+        found = limits(problem, [row for row in rows if row["refined"] != STEPS], problem.references)
+    else:
+        found = {name: Reference(value, EXACT, "closed form") for name, value in problem.exact(scene).items()}
+    references = {"resolution": found}
     values = {name: reference.value for name, reference in references["resolution"].items()}
     unit, size = problem.advised(scene, values)
     if problem.steps:  # infinitely many load steps at one resolution, by the default loop
@@ -134,13 +138,6 @@ def with_errors(problem: Problem, scene: Scene, rows: Sequence[dict[str, Any]]) 
             "advised": (unit, size) if row["refined"] != STEPS else (LOAD_STEPS, 1.0),
             "load_steps": scene.loading.steps,
         }
-
-
-def references_of(problem: Problem, scene: Scene, rows: Sequence[Mapping]) -> Mapping[str, Reference]:
-    """Quantity -> what its errors are measured against."""
-    if problem.exact is None:
-        return limits(problem, [row for row in rows if row["refined"] != STEPS], problem.references)
-    return {name: Reference(value, EXACT, "closed form") for name, value in problem.exact(scene).items()}
 
 
 def limits(problem: Problem, rows: Sequence[Mapping], methods: Sequence[str]) -> Mapping[str, Reference]:

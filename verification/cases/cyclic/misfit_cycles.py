@@ -10,7 +10,7 @@ from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import with_body, with_keys, with_loading, with_mesh
 from verification.cases.recipes import sphere_cells
 from verification.judging import Measured
-from verification.quantities import Reference
+from verification.quantities import Reference, of_cycles
 from verification.reference.misfit_sphere import PROFILES
 from verification.references import growing_sphere
 
@@ -47,30 +47,26 @@ def cycled_sphere(scene: Scene) -> Reference:
     return Reference({"peeq": peeq[1:], "strain": strain[1:]}, {"a": radius})
 
 
-def _column(result: Result, name: str) -> list:
-    return list(result.tables["cycles"][name])
-
-
 def peeq(scene: Scene, result: Result, exact: Reference) -> Measured:
     """Accumulated strain of each period after the first."""
-    return Measured(np.array(_column(result, "peeq_step_max"))[1:], exact.values["peeq"])
+    return Measured(of_cycles(result, "peeq_step_max")[1:], exact.values["peeq"])
 
 
 def strain(scene: Scene, result: Result, exact: Reference) -> Measured:
     """Strain that each period after the first leaves: none with Prager's law."""
-    return Measured(np.array(_column(result, "strain_step_max"))[1:], exact.values["strain"])
+    return Measured(of_cycles(result, "strain_step_max")[1:], exact.values["strain"])
 
 
 def decided(scene: Scene, result: Result, _: Reference | None) -> float:
     """Period since which the verdict is alternating."""
-    said = _column(result, "verdict")
+    said = list(result.tables["cycles"]["verdict"])
     others = [number for number, each in enumerate(said, start=1) if each != "alternating"]
     return 1.0 + max(others, default=0) if not others or others[-1] < len(said) else float("inf")
 
 
 def told(scene: Scene, result: Result, _: Reference | None) -> float:
     """The same over the number of periods told after thirty."""
-    further = _column(result, "periods_to_decide")
+    further = result.tables["cycles"]["periods_to_decide"]
     return (
         decided(scene, result, None) / (TOLD + (further[TOLD - 1] or 0)) if len(further) >= TOLD else np.nan
     )
@@ -78,7 +74,7 @@ def told(scene: Scene, result: Result, _: Reference | None) -> float:
 
 def ratchets(scene: Scene, result: Result, _: Reference | None) -> float:
     """Periods after which it is said to ratchet."""
-    return float(_column(result, "verdict").count("ratchetting"))
+    return float(list(result.tables["cycles"]["verdict"]).count("ratchetting"))
 
 
 def period(scene: Scene, result: Result, _: Reference | None) -> np.ndarray:

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import DataFrame, with_body, with_keys, with_loading
 from verification.judging import Measured
-from verification.quantities import Reference
+from verification.quantities import Reference, of_cycles, refined
 from verification.reference.hertz import subsurface_stress
 from verification.reference.stress import von_mises
 from verification.runs.sampling import rows_of
@@ -23,7 +23,6 @@ __all__ = [
     "splines_apart",
     "strain_on_axis",
 ]
-
 
 LAWS = {
     "prager": (3.4e9, {"modulus": (210e9 / 19,), "recovery": (0.0,)}),
@@ -51,24 +50,19 @@ def floor(scene: Scene, factor: float) -> Scene:
     return with_keys(scene, "solver", tolerance=1e-3 / (4 * 2 * 6) * factor * 6 / steps)
 
 
-def cycles(result: Result, name: str = "peeq_step_max") -> np.ndarray:
-    """A column of the table cycles."""
-    return np.array(result.tables["cycles"][name], dtype=float)
-
-
 def later_strain(scene: Scene, result: Result, _: Reference | None) -> float:
     """Largest plastic strain that a cycle after the first adds."""
-    return float(cycles(result)[1:].max())
+    return float(of_cycles(result, "peeq_step_max")[1:].max())
 
 
 def last_strain(scene: Scene, result: Result, _: Reference | None) -> float:
     """Plastic strain that the last cycle adds."""
-    return float(cycles(result)[-1])
+    return float(of_cycles(result, "peeq_step_max")[-1])
 
 
 def closes(scene: Scene, result: Result, _: Reference | None) -> float:
     """Strain that the last cycle leaves over that of the second."""
-    left = cycles(result, "strain_step_max")
+    left = of_cycles(result, "strain_step_max")
     return float(left[-1] / left[1])
 
 
@@ -167,11 +161,6 @@ def kinds(rows: DataFrame, column: str) -> Measured:
     return Measured(float(len({each for own in rows[column] for each in own})), 1.0)
 
 
-def _extrapolated(coarse: np.ndarray, fine: np.ndarray, n: int, m: int) -> np.ndarray:
-    """The limit of values that err with the square of the cells a/n and a/m."""
-    return fine + (fine - coarse) / ((m / n) ** 2 - 1)
-
-
 def limits(rows: DataFrame, column: str) -> tuple[np.ndarray, list[np.ndarray]]:
     """Depths, and of SAM and FEM the means over the depth of a coarse cell, extrapolated in two sizes."""
     found = []
@@ -183,7 +172,7 @@ def limits(rows: DataFrame, column: str) -> tuple[np.ndarray, list[np.ndarray]]:
             for size, profile in zip(sizes, own[column], strict=True)
         ]
         (z, coarse), (_, fine) = means
-        found.append(_extrapolated(coarse, fine, n, m)[z > LOW["limits"]])
+        found.append(refined({n: coarse, m: fine}, np.asarray)[z > LOW["limits"]])
     return z[z > LOW["limits"]], found
 
 
@@ -200,7 +189,7 @@ def splines(rows: DataFrame, column: str) -> tuple[np.ndarray, list[np.ndarray]]
     z = fem[column].iloc[0][0]
     z = z[(z >= LOW["splines"]) & (z <= HIGH)]
     return z, [
-        _extrapolated(*(CubicSpline(*each)(z) for each in own[column]), *map(int, own["size"]))
+        refined(dict(zip(own["size"].map(int), own[column], strict=True)), lambda each: CubicSpline(*each)(z))
         for own in (sam, fem)
     ]
 

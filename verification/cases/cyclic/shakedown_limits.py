@@ -10,7 +10,7 @@ import numpy as np
 
 from sam.scene import Path, Plasticity, Result, Scene
 from verification.cases.case import with_body, with_loading
-from verification.quantities import Reference
+from verification.quantities import Reference, of_cycles
 from verification.reference.shakedown import cell_limit, in_place_limit, travelling_limit
 
 __all__ = ["limit_of_cells", "share_of_limit"]
@@ -52,17 +52,13 @@ def limit_of_cells(scene: Scene, result: Result, _: Reference | None) -> float:
     return cell_limit(scene.coefficient, 1 / cells, stops, nu=scene.body.poisson) / limit_of(scene) - 1
 
 
-def strains(result: Result) -> np.ndarray:
-    """Largest strain that each cycle adds."""
-    return np.array(result.tables["cycles"]["peeq_step_max"], dtype=float)
-
-
 def settles(scene: Scene, result: Result, _: Reference | None) -> float:
     """Strain of the last two cycles over that of the first."""
-    return float(strains(result)[-2:].max() / strains(result)[0])
+    strains = of_cycles(result, "peeq_step_max")
+    return float(strains[-2:].max() / strains[0])
 
 
 def steady(scene: Scene, result: Result, _: Reference | None) -> float:
     """Strain of the last cycle over that of the one before."""
-    *_, before, last = strains(result)
+    *_, before, last = of_cycles(result, "peeq_step_max")
     return float(last / before) if before else 0.0

@@ -54,11 +54,11 @@ def scene_of(context: Context, contact: str, steps: int, size: int) -> Scene:
     return scene.model_copy(update={"friction": Friction(coefficient=friction)}) if friction else scene
 
 
-def alternating(steps: int, size: int, radius: float = 10e-6) -> Scene:
+def alternating(steps: int, size: int) -> Scene:
     """A given pressure, three times, on cells or elements of radius/size; Prager's perfect plasticity."""
     plasticity = {"law": "perfect", "yield_stress": YIELD, "kinematic": {"modulus": (MODULUS,)}}
+    radius, side, count = 10e-6, 50e-6, 5 * size
     pressure = {"prescribed": "hertz", "p0": ALTERNATING * YIELD, "radius": radius}
-    side, count = 5 * radius, 5 * size
     return Scene(
         body={"young": 210e9, "poisson": 0.3, "plasticity": plasticity},
         loading={**pressure, "steps": steps, "unload": True, "cycles": 3},
@@ -123,13 +123,11 @@ def row(one: Balance, contact: str) -> dict[str, Any]:
 
 
 def order_in_cells(rows: DataFrame, column: str) -> float:
-    """The order in which an error, a column of rows, falls with the size of the cells."""
-    return fit_power(1 / rows["size"], rows[column]).exponent
+    """The order in which an error falls with the size of the cells or the load step; the other is one."""
+    return fit_power(1 / (rows["size"] * rows["steps"]), rows[column]).exponent
 
 
-def order_in_steps(rows: DataFrame, column: str) -> float:
-    """The order in which an error, a column of rows, falls with the load step."""
-    return fit_power(1 / rows["steps"], rows[column]).exponent
+order_in_steps = order_in_cells
 
 
 def path(file: CaseFile, frame: DataFrame) -> Plot:

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SAM beside Tamaas, ContactMechanics and aspher: same problem, same error measure, one run on one
-machine.
-"""
+"""SAM beside Tamaas, ContactMechanics and aspher: same problem, error measure and machine, in one run."""
 
 from __future__ import annotations
 
@@ -9,13 +7,14 @@ import math
 import re
 from collections.abc import Iterator
 from functools import partial
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from verification.cases.case import FEM, Context, Plot, SmallTable, number, with_mesh
 from verification.cost.precision import at_error
-from verification.figures.lines import of_programs
+from verification.figures.lines import CYCLES, Curve, curves
 from verification.peers import elastic, plastic, problems
 from verification.peers.plastic import StoredReference, between, periodic
 from verification.peers.programs import sam as ours
@@ -40,6 +39,7 @@ ROUNDS = {"quick": 1, "full": 3}
 MESHES = (32, 48)  # elements in the Hertz radius of the finite-element reference of the step
 # on one grid, settings are compared whose error is at most this many times the smallest one there
 AS_GOOD = 1.5
+LOOKS = dict(zip(NAMES, CYCLES, strict=False))
 REFERENCES = "Step: references, with the distance of the next coarser grid as uncertainty"
 
 
@@ -152,13 +152,8 @@ step_on_coarse, step_on_fine = (partial(_step, place=place) for place in (0, -1)
 
 def _table(caption: str, lines: list[dict[str, Any]]) -> SmallTable:
     """A table of lines with the same keys."""
-    cells = [
-        [
-            v if isinstance(v, str) else number(v if v is not None and math.isfinite(v) else None, 3)
-            for v in each
-        ]
-        for each in (line.values() for line in lines)
-    ]
+    known = [[None if each != each else each for each in line.values()] for line in lines]  # not nan
+    cells = [[each if isinstance(each, str) else number(each, 3) for each in line] for line in known]
     return SmallTable(caption, tuple(lines[0]) if lines else (), cells)
 
 
@@ -211,17 +206,17 @@ def over_time(file: CaseFile, frame: DataFrame, problem: str) -> Plot:
         problems.HERTZ: ("Elastic Hertz", "error of the largest pressure"),
         problems.STEP: ("Elastic-plastic step", "error of the plastic strain below the apex, L2"),
     }[problem]
-    series = {
-        re.sub(r"1e-(\d)", r"tolerance $10^{-\1}$", curve): (
-            NAMES[program],
-            own["seconds"].to_numpy(),
-            own["error"].to_numpy(),
-        )
-        for (program, curve), own in rows.groupby(["model", "curve"], sort=False)
-    }
+    drawn, looks, dashes = {}, {}, {program: cycle(("-", "--", ":")) for program in LOOKS}
+    for (program, curve), own in rows.groupby(["model", "curve"], sort=False):
+        label = re.sub(r"1e-(\d)", r"tolerance $10^{-\1}$", curve)
+        drawn[label] = Curve(own["seconds"].to_numpy(), own["error"].to_numpy())
+        looks[label] = LOOKS[program] | {"linestyle": next(dashes[program]), "fillstyle": "none"}
     floor = rows["floor"].max() if problem == problems.STEP else 0.0
-    target = elastic.HERTZ_ERROR if problem == problems.HERTZ else None
-    drawing = of_programs(series, "processor time [s]", of, target=target, floor=floor)
+    marks = (
+        {"error whose times are compared": ("y", elastic.HERTZ_ERROR)} if problem == problems.HERTZ else {}
+    )
+    how = {"logarithmic": "xy", "marks": marks, "floor": floor, "size": (8.4, 4.2)}
+    drawing = curves({"": drawn}, "processor time [s]", of, looks=looks, **how)
     text = f"The figure compares the {of} of each program over its processor time; each marker is one grid."
     shade = (
         "The uncertainty of the references is shaded." if floor else "Times are compared at the dotted error."

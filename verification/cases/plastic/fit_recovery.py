@@ -20,7 +20,7 @@ import numpy as np
 from scipy.stats.qmc import Sobol
 
 from sam.scene import Scene
-from verification.cases.case import Context, SmallTable
+from verification.cases.case import Context
 from verification.fit import Definition, Solves, definition_of, fit
 from verification.fit.definition import Test, Variables
 from verification.fit.fitting import QUANTILE
@@ -321,37 +321,6 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
             yield {"sweep": "drawn", "law": name, "draw": draw, **one(name, 0.01, draws, context)}
     yield from unloaded(context)
     yield from further(context)
-
-
-def curves(frame: Any) -> SmallTable:
-    """Errors of the curve at 1 % of noise, and the correlations."""
-    rows = [
-        [
-            row["law"],
-            *(f"{100 * row[key]:.2g} %" for key in ("curve-error", "curve-least")),
-            f"{0.02 * row['noise'] / row['curve-least'] * 100:.2g} %",
-            f"{row['correlation']:.2f}",
-        ]
-        for _, row in frame[frame["noise"] == 0.01].iterrows()
-    ]
-    heads = (
-        "law",
-        "error",
-        "least possible",
-        "noise with which that is 2 %",
-        "correlation of the first and the last",
-    )
-    return SmallTable("Yield curve up to the largest strain, noise 1 %", heads, rows)
-
-
-def moduli(frame: Any) -> SmallTable:
-    """Errors of E."""
-    own = frame[frame["sweep"] == "unloading"]
-    rows = [
-        [row["law"], f"{100 * row['fitted']:.2g} %", f"{100 * row['read']:.2g} %"]
-        for _, row in own.iterrows()
-    ]
-    return SmallTable("Error of E from an unloading", ("body", "fit", "Oliver and Pharr"), rows)
 
 
 def main() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from sam.scene import Plasticity, Result, Scene
 from verification.cases.case import DataFrame, with_body, with_loading
 from verification.cases.plastic.misfit_images import NAMES, Images, cell_means, images
-from verification.judging import Measured
+from verification.judging import Measured, relative_l2
 from verification.quantities import Reference
 from verification.reference.misfit_sphere import GrowingSphere
 from verification.references import growing_sphere
@@ -75,14 +75,10 @@ def at_points(scene: Scene, result: Result) -> tuple[np.ndarray, np.ndarray, np.
     return peeq, here, 2 * np.pi * x * area[:, None] / 4
 
 
-def _l2(peeq: np.ndarray, here: np.ndarray, volume: np.ndarray) -> float:
-    return float(np.sqrt((volume * (peeq - here) ** 2).sum() / (volume * here**2).sum()))
-
-
 def l2(scene: Scene, result: Result, _: Reference) -> float:
     """L2 error of the plastic strain."""
     peeq, volume = in_cells(result, "peak")
-    return _l2(peeq, means_of_cells(scene, result), volume)
+    return relative_l2(peeq, means_of_cells(scene, result), volume)
 
 
 def total(scene: Scene, result: Result, _: Reference) -> float:
@@ -111,7 +107,7 @@ def raised(scene: Scene, result: Result, _: Reference) -> float:
 
 def l2_at_points(scene: Scene, result: Result, _: Reference) -> float:
     """L2 error of the plastic strain at the Gauss points."""
-    return _l2(*at_points(scene, result))
+    return relative_l2(*at_points(scene, result))
 
 
 def total_at_points(scene: Scene, result: Result, _: Reference) -> float:

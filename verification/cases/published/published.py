@@ -86,14 +86,8 @@ def yields_at(scene: Scene, result: Result, reference: Reference | None) -> Meas
 def points(scene: Scene, result: Result) -> dict[str, np.ndarray]:
     """w*, P* and A* of the load steps whose contact is resolved and whose w* is within the fits."""
     first, history = jackson_green(scene)[1], result.tables["history"]
-    w, load, area = (
-        np.asarray(history[name], dtype=float) / unit
-        for name, unit in zip(
-            ("approach_m", "force_N", "contact_area_m2"),
-            (first.approach, first.force, first.area),
-            strict=True,
-        )
-    )
+    units = {"approach_m": first.approach, "force_N": first.force, "contact_area_m2": first.area}
+    w, load, area = (np.asarray(history[name], dtype=float) / unit for name, unit in units.items())
     use = (np.sqrt(area / area.max()) >= RESOLVED) & (w <= 1.05 * LARGEST)
     return {"w": w[use], "load": load[use], "area": area[use]}
 

@@ -18,7 +18,7 @@ from sam.scene.surface import heights, mean_deviation, with_relief
 from verification.cases.case import SAM, Context, DataFrame, Plot, with_keys, with_loading
 from verification.cases.running_in.study import CUBIC, LITERATURE_B, NAN, with_plasticity
 from verification.compare.running_in_measures import Scar
-from verification.figures.lines import over_cells
+from verification.figures.lines import Curve, curves
 from verification.rows import CaseFile
 
 SIDE, SHORTEST, SMOOTHED = 25e-6, 8e-6, 5e-6  # m: of the patch, shortest wave, window of smoothing
@@ -55,10 +55,8 @@ class Member:
 
     def of(self, base: Scene) -> Scene:
         """The patch: waves of SHORTEST and more on softer steel, so that most surfaces wear."""
-        surface, grid = (
-            shifted(base.surface, self.seed, self.cells, self.thirds / 3),
-            Grid(depths=cut(FACES, self.parts)),
-        )
+        surface = shifted(base.surface, self.seed, self.cells, self.thirds / 3)
+        grid = Grid(depths=cut(FACES, self.parts))
         scene = with_plasticity(base.model_copy(update={"surface": surface, "grid": grid}), B=LITERATURE_B)
         scene = with_keys(scene, "wear", smoothing_window=round(SMOOTHED * self.cells / SIDE))
         keys = {"force": self.force * FORCE, "cycles": CYCLES, "steps": self.steps, "unload_steps": 1}
@@ -95,12 +93,6 @@ def members() -> list[Member]:
     grids = [Member(seed, cells, thirds) for cells in CELLS for thirds in THIRDS[cells] for seed in SEEDS]
     varied = [of(seed) for of in VARIATIONS.values() for seed in SEEDS]
     return sorted(grids + varied, key=lambda one: one.cells)
-
-
-def scenes(context: Context) -> Iterator[Scene]:
-    """Of all runs, those that cost most first."""
-    base = context.scene("running-in-bulk")
-    yield from (member.of(base) for member in reversed(members()))
 
 
 def surfaces(context: Context) -> Iterator[dict[str, Any]]:
@@ -173,13 +165,18 @@ def overlaps(fine: int, coarse: int) -> np.ndarray:
 
 
 def cells(file: CaseFile, frame: DataFrame) -> Plot:
-    """Worn volume over the cells."""
-    volumes = {
-        f"surface {row['surface']}": {per_wave(n): CUBIC * row[f"{n} cells"] for n in CELLS}
-        for _, row in frame.iterrows()
-    }
+    """Worn volume over the cells: of each surface the means, with bars from the smallest to the largest."""
+    drawn, x = {}, np.array([per_wave(n) for n in CELLS])
+    for _, row in frame.iterrows():
+        shifts = [CUBIC * row[f"{n} cells"] for n in CELLS]
+        mean, *ends = (np.array([of(each) for each in shifts]) for of in (np.mean, min, max))
+        drawn[f"surface {row['surface']}"] = Curve(x, mean, ends=tuple(ends))
+    marks, xlabel = {"recommended": ("x", per_wave(DEFAULT))}, "cells in the shortest wave of the surface"
+    how = {"logarithmic": "x", "marks": marks, "size": (6.2, 3.6)}
+    drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
+    drawing.figure.axes[0].set_ylim(bottom=0.0)
     return Plot(
-        over_cells(volumes, per_wave(DEFAULT)),
+        drawing,
         "cells",
         f"Worn volume after {CYCLES} cycles on finer cells",
         f"The figure shows the volume worn after {CYCLES} cycles over the cells in the shortest wave; the "

@@ -43,9 +43,8 @@ def scene_of(base: Scene, cells: int) -> Scene:
 
 
 def compared(context: Context) -> Iterator[dict[str, Any]]:
-    """SAM off FEM on three grids, at the peak of the first and of the last cycle and after it,
-    where FEM removes by its own strain or the depths of SAM; wears: least depth in m that SAM
-    removes in a cycle.
+    """SAM off FEM on three grids, at the peak of the first and of the last cycle and after it, where FEM
+    removes by its own strain or the depths of SAM; wears: least depth in m that SAM removes in a cycle.
     """
     base = context.scene("rough-asperities")
     for cells in CELLS:

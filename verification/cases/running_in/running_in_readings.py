@@ -47,12 +47,8 @@ QUARTER = Effort(LAST, STEPS, 32, tuple(NAMES), (2, 4, 6))
 ROOFS, FILTERS = {"roof stays": "stays", "roof falls": "falls"}, {"removes all": False, "fills": True}
 """In words -> keys of [wear]."""
 PRINTED, SECOND, SMALL = "printed inputs", "second reading", "printed inputs, quarter"
-FINE, LOOP, LOOSE, FILM = (
-    "cells of 0.457 µm, quarter",
-    "printed loop",
-    "printed loop, 2 %",
-    "film by Eq. 12 to 14",
-)
+FINE, FILM = "cells of 0.457 µm, quarter", "film by Eq. 12 to 14"
+LOOP, LOOSE = "printed loop", "printed loop, 2 %"
 FINER, WINDOW = 70, 11  # cells along 32 um, 0.457 um each, and in the window of smoothing, 5 um
 LOOSER = 0.02  # yield excess that the printed loop may leave, where the scenes have 0.001
 FALLEN = -0.02  # of a coefficient that falls, where running-in asks for 0.001
@@ -103,11 +99,6 @@ READINGS = {
     )
     for name, (base, roof, smoothing) in COMBINED.items()
 } | OTHERS
-
-
-def base_of(reading: str) -> str:
-    """What a reading combines with roof and filter, or is alone."""
-    return COMBINED.get(reading, (reading,))[0]
 
 
 IMPLIED = ("bulk: hardly any wear later", "curve A: friction below that of bulk")
@@ -206,7 +197,7 @@ class RunningInReadings(Readings):
         yield changes(held_in(said))
         yield from study.together(said)
         for base in (*BASES, *OTHERS):
-            own = {name: each for name, each in said.items() if base_of(name) == base}
+            own = {name: each for name, each in said.items() if COMBINED.get(name, (name,))[0] == base}
             yield study.statements_table(own, base)
         groups = found.groupby(["material", "reading"], sort=False)["run"]
         yield study.runs_table("Runs", {f"{NAMES[case]}, {name}": runs for (case, name), runs in groups})

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sam.scene import Path, Result, Scene
-from verification.cases.case import SAM, Context, DataFrame, with_grid, with_loading
+from verification.cases.case import SAM, Context, with_grid, with_loading
 from verification.cases.running_in.study import outside
 from verification.runs import models
 
@@ -59,12 +59,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
     moving = context.solve(SAM, own, "way")
     rest = context.solve(SAM, with_loading(own, path=None), "rest")
     differing, growth = resumed(small(scene, FEWER))
-    yield (
-        {"run": "on-a-way"}
-        | cost(moving)
-        | on_way(own, moving, rest)
-        | {"resumed": differing, "growth": growth}
-    )
+    passes = on_way(own, moving, rest) | {"resumed": differing, "growth": growth}
+    yield {"run": "on-a-way"} | cost(moving) | passes
     yield {"run": "at-rest"} | cost(rest)
 
 
@@ -94,8 +90,3 @@ def on_way(scene: Scene, moving: Result, rest: Result) -> dict[str, Any]:
         "outside": outside(np.asarray(passes["friction_mean"]), low, high),
         **{name: np.asarray(passes[name]) for name in ("pass", "friction_mean", "wear_of_pass_m3")},
     }
-
-
-def total(rows: DataFrame, column: str) -> float:
-    """Of all runs."""
-    return float(rows[column].sum())

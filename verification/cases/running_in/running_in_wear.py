@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from sam.scene import Result, Wear
+from sam.scene import Wear
 from verification.cases.case import SAM, Context, with_keys, with_loading
 from verification.cases.recipes import Resolution, sliding_scene
 from verification.cases.running_in.study import Effort, reduced
+from verification.quantities import of_cycles
 from verification.runs.sampling import surface_pressure
 
 LIMIT = 0.004
@@ -40,7 +41,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
             "settles": float((strain[-1] - strain[-2]) / strain[0]),
         }
         if label == "sphere-worn":
-            worn = worn_of(result)
+            fields = result.fields  # at the last peak, before the removal of the last cycle
+            worn = surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["worn_m"])[2]
             row |= {"asymmetry": asymmetry(worn), "turned": asymmetry(worn, turned=True)}
         if label == "sphere-infinite":
             names = ("peeq_max", "p_max_Pa", "friction_coefficient")
@@ -49,19 +51,8 @@ def runs(context: Context) -> Iterator[dict[str, Any]]:
         yield row
 
 
-def worn_of(result: Result) -> np.ndarray:
-    """(nx, ny) worn depth in m at the last peak, before the removal of the last cycle."""
-    fields = result.fields
-    return surface_pressure(fields.points, fields.cells["quad"], fields.cell_data["worn_m"])[2]
-
-
 def asymmetry(worn: np.ndarray, turned: bool = False) -> float:
-    """Largest difference to the scar mirrored or turned by 90 degrees over the largest depth, or NaN."""
+    """Largest difference of depths (nx, ny) to the same mirrored or turned by 90 degrees over the deepest."""
     others = (worn.T,) if turned else (worn[::-1], worn[:, ::-1])
     with np.errstate(invalid="ignore"):
         return float(np.max([np.abs(worn - other).max() for other in others]) / worn.max())
-
-
-def of_cycles(result: Result, column: str) -> np.ndarray:
-    """A column of the table of cycles."""
-    return np.asarray(result.tables["cycles"][column], dtype=float)

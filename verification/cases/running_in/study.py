@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes, named readings
-of the paper that change them, their runs as one frame, and the statements of the paper as measures with
-limits.
+"""The study of running-in (Bosman & Schipper 2011, Figs. 13-17): five materials as scenes, named readings of
+the paper that change them, their runs as one frame, and the statements of the paper as measures with limits.
 
 A study (`Readings`) runs a list of named readings, each on some surfaces; `judged` says of each which of
-STATEMENTS hold. A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and
-other numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to
-it: only directions and ratios are asked for. A statement that the model contradicts is a finding;
-nothing here is a row.
+STATEMENTS hold. A frame has a row a run: the parts of its key, `run`, `converged`, and its measures and other
+numbers, NaN where it did not converge. The paper's surface is not public and its numbers belong to it: only
+directions and ratios are asked for. A statement that the model contradicts is a finding; nothing here is a
+row.
 """
 
 from __future__ import annotations
@@ -85,9 +84,7 @@ def printed_scenes(context: Context, effort: Effort) -> dict[str, Scene]:
 
 
 def reduced(scene: Scene, effort: Effort) -> Scene:
-    """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and
-    steps.
-    """
+    """The scene on a patch of so many cells, at its nominal pressure, for so many cycles and steps."""
     if effort.cells != scene.grid.cells[0]:
         share = effort.cells / scene.grid.cells[0]
         extent = tuple(share * side for side in scene.grid.extent)
@@ -113,9 +110,7 @@ def with_constant(scene: Scene, B: float) -> Scene:
 
 
 def with_layer_alpha(scene: Scene, alpha: float) -> Scene:
-    """The layer, if there is one, with Swift's law of its own: hardening by alpha times the
-    strain.
-    """
+    """The layer, if there is one, with Swift's law of its own: hardening by alpha times the strain."""
     plasticity = scene.body.plasticity
     if plasticity.layer_thickness is None:
         return scene
@@ -133,9 +128,8 @@ def with_deviation(scene: Scene, scale: float) -> Scene:
 
 
 def with_counter(scene: Scene, sq: float, *, renew: bool = True) -> Scene:
-    """A rough counter-surface of so many m rms, another one in each cycle if it is renewed. Its
-    seeds, one for each cycle, are neither those of the surfaces nor those of another surface's
-    counter-surface.
+    """A rough counter-surface of so many m rms, another one in each cycle if it is renewed. Its seeds, one
+    for each cycle, are neither those of the surfaces nor those of another surface's counter-surface.
     """
     keys = {**ROUGHNESS, "sq": sq, "seed": 1000 * scene.surface.seed + 1, "renew": renew}
     return with_keys(scene, "counterbody", surface=CounterSurface(kind="self-affine", **keys))
@@ -155,9 +149,7 @@ def swift(law: Plasticity, peeq: np.ndarray) -> np.ndarray:
 
 
 def hardened(scene: Scene, share: float) -> Scene:
-    """The body with so much of its hardening by back-stresses, and the rest as a table that ends
-    flat.
-    """
+    """The body with so much of its hardening by back-stresses, and the rest as a table that ends flat."""
     law, peeq = scene.body.plasticity, np.append(0.0, np.geomspace(1e-7, LARGEST, POINTS))
     first = float(swift(law, np.zeros(1))[0])
     stress = first + (1 - share) * (swift(law, peeq) - first)
@@ -469,9 +461,7 @@ class Statement(NamedTuple):
     how: str
 
     def of(self, measures: DataFrame) -> Any:
-        """Its measure on each surface, NaN: says nothing there. measures: (measure, material) ->
-        of each.
-        """
+        """Its measure on each surface, NaN: says nothing there. measures: (measure, material) -> of each."""
         name, *materials = self.how.split()
         at = next((k for k, each in enumerate(materials) if each in "-/"), len(materials))
         own = measures[name][materials[:at]].max(axis=1, skipna=False)

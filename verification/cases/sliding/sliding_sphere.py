@@ -52,11 +52,9 @@ def interior_errors(across: int, friction: float) -> np.ndarray:
 
 def plane_maximum(across: int, friction: float) -> tuple[float, float]:
     """Largest von Mises stress in the plane y = 0 and its depth, in p0 and radii, surface included."""
-    x, h = grid_of(across)
-    p = mean_traction(x, h)
     depths = np.linspace(0.0, 1.0, 81)
-    row = Window(0, x.size // 2, x.size, 1)
-    mises = von_mises(stresses({1: friction * p, 3: p}, (h, h), depths, row, nu=NU))[:, :, 0]
+    _, under_p, under_q = row_stresses(across, depths)
+    mises = von_mises(under_p + friction * under_q)
     k = np.unravel_index(mises.argmax(), mises.shape)[0]
     return float(mises.max()), float(depths[k])
 

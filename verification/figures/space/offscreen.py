@@ -9,6 +9,7 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
+from typing import Any
 
 from sam.scene import Progress
 from verification.runs.files import FIGURES, FolderError, write_atomically
@@ -90,17 +91,10 @@ def _run(arguments: list[str], environment: dict[str, str]) -> None:
     root = str(Path(__file__).parents[3])
     paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
     command = [sys.executable, "-P", *CHILD, *arguments]
+    how: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
+    how["env"] = {**os.environ, "PYTHONPATH": paths, **environment}
     try:
-        ended = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            env={**os.environ, "PYTHONPATH": paths, **environment},
-            timeout=LONGEST_S,
-            check=False,
-        )
+        ended = subprocess.run(command, errors="replace", timeout=LONGEST_S, check=False, **how)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise CannotDrawError(f"no pictures in space: {error}; {REMEDY}") from None
     if ended.returncode == WRONG:

@@ -18,10 +18,8 @@ RELIEF = 0.25
 NOTHING = 1e-6
 """Of the largest displacement under load: one that is smaller everywhere is rounding."""
 VALUE = {"scalars": "value"}
-GLASS, LINES = (
-    {"color": "white", "opacity": 0.2},
-    {"color": "black", "opacity": 0.35, "style": "wireframe", "line_width": 1},
-)
+GLASS = {"color": "white", "opacity": 0.2}
+LINES = {"color": "black", "opacity": 0.35, "style": "wireframe", "line_width": 1}
 BEFORE_IT = 2e-3
 """Of the width: how far a mark stands out of the face on which it is drawn."""
 
@@ -149,14 +147,8 @@ def mises(found: Found) -> Picture | None:
     parts = [(block, {"color": BODY, **LIT, "smooth_shading": False}), (face, VALUE | FLAT)]
     parts += [*_contact_line(found, box), *_interface_line(found, box)]
     title = f"Von Mises stress {_load(found)}, cut at {_place(y)}"
-    return Picture(
-        title,
-        "von Mises stress [GPa]",
-        (0.0, float(values.max())),
-        parts,
-        box,
-        note="black: edge of the contact",
-    )
+    note = "black: edge of the contact"
+    return Picture(title, "von Mises stress [GPa]", (0.0, float(values.max())), parts, box, note=note)
 
 
 def _place(y: float) -> str:
