@@ -11,7 +11,6 @@ import pytest
 
 from fem_reference.common.back_stress import KinematicJ2
 from sam.plasticity.flow import KinematicFlow
-from sam.plasticity.model import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve
@@ -60,15 +59,6 @@ def fields_of(result):
 def largest(field):
     """Its largest value; SAM has no stresses on the surface."""
     return float(np.nanmax(field))
-
-
-def test_with_pragers_law_the_back_stress_follows_the_plastic_strain():
-    """a = eps_p in every cell and component, shears of both halves of a mirrored box included."""
-    kept = []
-    solve(pressed(1.15 * MELAN * YIELD, PRAGER), SAM, checkpoint=kept.append)
-    material = kept[-1].record(Progressed).state.material.points
-    assert np.abs(material.strain[3:]).max() > 1e-3
-    assert np.abs(material.back[0] - material.strain).max() < 1e-12
 
 
 @pytest.mark.parametrize("model", [SAM, FEM])
