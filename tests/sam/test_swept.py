@@ -80,7 +80,9 @@ def test_layers_are_near_within_so_many_cells(error):
     for faces in (EVEN, np.arange(40.0) / 8, GRADED, TWO):
         runs, top = neighbours(faces, error)
         assert top == np.count_nonzero(faces[:-1] < np.log(8 / error) / np.pi)
-        assert sum(run.count for run in runs) == len(faces) - 1 and (len(runs) == 1) == np.allclose(np.diff(faces, 2), 0)
+        assert sum(run.count for run in runs) == len(faces) - 1 and (len(runs) == 1) == np.allclose(
+            np.diff(faces, 2), 0
+        )
 
 
 @pytest.mark.parametrize(
