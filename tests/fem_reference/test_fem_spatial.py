@@ -32,9 +32,8 @@ HERTZ = (0.75 * PLASTIC["force"] * RADIUS * (1 - NU**2) / YOUNG) ** (1 / 3)
 
 
 def scene(cells=3, friction=0.0, *, body=None, counter=SPHERE, box=4.0, direction="constant", **keys):
-    """A rigid sphere on steel; friction: its coefficient; keys: of loading, and units."""
+    """A rigid sphere on steel; friction: its coefficient; keys: of loading."""
     return small_scene(
-        *keys.pop("units", (1.0, 1.0)),
         body=body or {},
         counterbody=counter,
         loading=keys,
