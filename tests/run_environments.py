@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The suite in one environment after another; each changes one thing that a machine decides, and no
-other.
+"""The suite in one environment after another; each changes one thing that a machine decides, and no other.
 
 python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
 
-PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on
-this machine is not counted as a test of anything. Prints a row for each as it ends, and the whole
-output of pytest where a test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
+PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on this machine
+is not counted as a test of anything. Prints a row for each as it ends, and the whole output of pytest where a
+test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
 """
 
 import argparse
@@ -81,10 +80,9 @@ class NotHereError(Exception):
 class Environment:
     """One change of what a machine decides.
 
-    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the
-    words before a command, raises NotHereError; owner: number of the user whom a copy of the
-    checkout is given to, and who runs it; holds: whether a probe shows the change, given the one
-    without it.
+    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the words before
+    a command, raises NotHereError; owner: number of the user whom a copy of the checkout is given to, and who
+    runs it; holds: whether a probe shows the change, given the one without it.
     """
 
     says: str

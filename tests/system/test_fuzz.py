@@ -212,7 +212,8 @@ def test_a_reader_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, read
 def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, code, gates):
     if gates == {"hangs"}:
         monkeypatch.setattr(case, "COMMAND_LIMIT_S", 0.3)
-    assert red(case.judge_commands([tuple(KINDS).index("values")], tmp_path, (sys.executable, "-c", code))) == gates
+    one = [tuple(KINDS).index("values")]
+    assert red(case.judge_commands(one, tmp_path, (sys.executable, "-c", code))) == gates
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):

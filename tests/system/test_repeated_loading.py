@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A body with back-stresses under a Hertz pressure that comes and goes, in both models: what a
-result holds of them, and nothing of them without the table. Limits and verdicts are rows of
-`repeated-loading`.
+"""A body with back-stresses under a Hertz pressure that comes and goes, in both models: what a result holds
+of them, and nothing of them without the table. Limits and verdicts are rows of `repeated-loading`.
 """
 
 from __future__ import annotations

@@ -207,9 +207,8 @@ def is_what_its_name_says(name: str, result, made: list[Path]) -> None:
 
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
-    """The callback raises: what it was given before does not change, and no caller's array is
-    written to later. Its arrays are numbers in C order: a file gives them back in it, and sums go
-    along the memory.
+    """The callback raises: what it was given before does not change, and no caller's array is written to
+    later. Its arrays are numbers in C order: a file gives them back in it, and sums go along the memory.
     """
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")
