@@ -38,10 +38,6 @@ def over_inputs(**changed: History) -> Studied:
         if shares[point, deciding] < 0.5:
             own = history(0.0 * own.volume, 0.3, own.sa)
         runs[point, name, 7] = Run(scene_at(with_seed(SCENES[name], 7), shares[point]), result_of(own))
-    return studied(shares, runs)
-
-
-def studied(shares: np.ndarray, runs: Mapping[tuple, Run]) -> Studied:
     return Studied(framed(runs, PARTS), np.asarray(shares))
 
 

@@ -30,8 +30,8 @@ LATEST = ".git|.venv*|latest*|__pycache__|.pytest_cache|.hypothesis|.ruff_cache|
 LIMIT_S, PROBE_LIMIT_S = 3600.0, 120.0
 COLUMNS = ("environment", "change", "BLAS of numpy, scipy (threads)", "outcome")
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
-NOBODY, STRANGER = 65534, 54321
-"""Numbers of an ordinary user, and of one that the machine does not know, as containers use them."""
+STRANGER = 54321
+"""Number of an ordinary user that the machine does not know, as containers use them."""
 HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "USER", "LOGNAME")
 LANGUAGE = ("LC_ALL", "LC_CTYPE", "LANG", "PYTHONUTF8", "PYTHONCOERCECLOCALE", "PYTHONIOENCODING")
 SCREEN = ("TERM", "COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR")
@@ -202,12 +202,6 @@ def environments() -> dict[str, Environment]:
             nobody,
             owner=STRANGER,
             holds=lambda probe, plain: probe["user"] == STRANGER and probe["home"] == "~",
-        ),
-        "user": Environment(
-            "an ordinary user instead of root",
-            {**nobody, "HOME": "home"},
-            owner=NOBODY,
-            holds=lambda probe, plain: probe["user"] == NOBODY,
         ),
         "read-only": Environment(
             "the checkout cannot be written",
