@@ -34,14 +34,7 @@ if TYPE_CHECKING:
 if _words := foreign_package():
     raise ImportError(_words)
 
-from sam.scene import (
-    HeightMap as HeightMap,
-    Progress,
-    Result,
-    Scene,
-    SceneError as SceneError,
-    load_scene,
-)
+from sam.scene import HeightMap as HeightMap, Progress, Result, Scene, SceneError as SceneError, load_scene
 from samfem.refusals import SeveralError as SeveralError
 from verification import figures
 from verification.runs import files, meshes, models

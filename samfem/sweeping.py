@@ -166,13 +166,12 @@ def sweep(
     use_store: bool = True,
     anyway: bool = False,
 ) -> int:
-    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons
-    on stderr.
+    """Solve the scenes of a study into a folder; 0 if all converged, else 1 with the first reasons on stderr.
 
-    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a
-    core); runs: write a folder for each result; use_store: take what the store holds, and keep
-    there what is solved; anyway: also scenes that take longer than a command begins unasked. Raises
-    SceneError or FolderError before anything is made, KeyboardInterrupt that says what is kept.
+    scheduler: address of a Dask cluster, instead of so many `workers` on this machine (None: one a core);
+    runs: write a folder for each result; use_store: take what the store holds, and keep there what is solved;
+    anyway: also scenes that take longer than a command begins unasked. Raises SceneError or FolderError
+    before anything is made, KeyboardInterrupt that says what is kept.
     """
     content, folder = read_study(path), out or Path(f"{path.stem}-sweep")
     check(folder)

@@ -46,9 +46,6 @@ SHAPES = {
     "cylinder": {"shape": "cylinder", "radius": RADIUS, "length": 1e-3},
 }
 """An example of each shape."""
-LENGTHS = {"approach", "depth", "depths", "extent", "film_thickness", "flat_radius", "radius", "thickness"}
-LENGTHS |= {"radius_x", "radius_y"}
-STRESSES = {"young", "yield_stress", "modulus", "B", "p0", "film_young", "film_yield"}
 
 
 def hertz_force(p0: float, radius: float = RADIUS, modulus: float = MODULUS) -> float:
@@ -56,26 +53,11 @@ def hertz_force(p0: float, radius: float = RADIUS, modulus: float = MODULUS) -> 
     return (math.pi * p0) ** 3 * radius**2 / (6 * modulus**2)
 
 
-def in_units(table: Any, length: float, stress: float) -> Any:
-    """The values of a table of a scene with every length and every stress multiplied by a factor."""
-    factors = dict.fromkeys(LENGTHS, length) | dict.fromkeys(STRESSES, stress)
-    factors["force"] = stress * length**2
-
-    def scaled(key: str, value: Any) -> Any:
-        if isinstance(value, Mapping):
-            return in_units(value, length, stress)
-        if isinstance(value, list | tuple):
-            return tuple(scaled(key, each) for each in value)
-        return value * factors[key] if key in factors and value is not None else value
-
-    return {key: scaled(key, value) for key, value in table.items()}
-
-
-def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
+def scene(**tables: Any) -> Scene:
     """A rigid sphere of 105 um pressed on steel by 0.65 N, with the keys of its tables replaced.
 
     A table that is None is left out, and so are the counter-body and the force if the pressure is prescribed.
-    friction may be a coefficient. length and stress are the factors of `in_units`.
+    friction may be a coefficient.
     """
     given = "prescribed" in tables.get("loading", {})
     content: dict[str, Any] = {"body": STEEL, "loading": {} if given else {"force": 0.65}}
@@ -89,13 +71,7 @@ def scene(length: float = 1.0, stress: float = 1.0, **tables: Any) -> Scene:
         whole = name == "counterbody" and isinstance(table, Mapping) and "shape" in table
         changed = isinstance(table, Mapping) and not whole
         content[name] = {**content.get(name, {}), **table} if changed else table
-    content = {name: table for name, table in content.items() if table is not None}
-    return Scene(
-        **{
-            name: in_units(table, length, stress) if isinstance(table, Mapping) else table
-            for name, table in content.items()
-        }
-    )
+    return Scene(**{name: table for name, table in content.items() if table is not None})
 
 
 def yielding(ratio: float, plasticity: Mapping = SWIFT, **tables: Any) -> Scene:

@@ -154,15 +154,6 @@ def _components(a: dict) -> str:
     return f"under F{a['load']}" + (", shear across y" if {"23", "12"} & set(a["names"]) else "")
 
 
-def _more_rows(a: dict) -> str:
-    """A window beyond the two rows that may touch y = 0."""
-    return "stress outside y = 0" if a["observed"].ny > 2 else "stress in y = 0"
-
-
-def _slips(a: dict) -> str:
-    return "slipping step" if a["load"].ratio else "step without slip"
-
-
 def _search(a: dict) -> str:
     """Of a box; whether its grid, or itself, knows a traction that moves the gap."""
     traction = a["operators"].coupling if "operators" in a else a["self"].tangential
@@ -191,7 +182,8 @@ PROBES: dict[str, dict[str, Namer]] = {
         "BoxContact.solve": _search,
         "BoxContact.displacement": "surface displacement",
         "SurfaceOperators.displacement": "surface displacement",
-        "stresses": _more_rows,
+        # two rows may touch y = 0
+        "stresses": lambda a: "stress outside y = 0" if a["observed"].ny > 2 else "stress in y = 0",
         "moved_rows": lambda a: "u{} under F{} in y = 0".format(*a["moved_by"]),
         "bare_body": "bare comparison",
         "problem.yields": "yield stress",
@@ -227,7 +219,7 @@ PROBES: dict[str, dict[str, Namer]] = {
         "MisfitSphere.strain": "misfit strain",
         "surface.hertz_forces": "forces of a given pressure",
         "recovery.stresses": "stresses",
-        "SlidingProblem.newton_step": _slips,
+        "SlidingProblem.newton_step": lambda a: "slipping step" if a["load"].ratio else "step without slip",
         "track.Track.driven": "motion of the counter-body",
         "rough.heights_of": "heights",
         "rough.counter_heights_of": "counter heights",

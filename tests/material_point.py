@@ -19,11 +19,9 @@ ENGINEERING = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 class SamPoint:
     """One cell: strains and stresses 11 22 33 23 13 12."""
 
-    def __init__(self, curve, modulus, recovery, factor=1.0):
+    def __init__(self, curve, modulus, recovery):
         back = [np.reshape(np.array(values, dtype=float), (-1, 1, 1, 1)) for values in (modulus, recovery)]
-        self.material = KinematicMaterial(
-            MU, curve, np.full(1, factor), BackStressFields(factor * back[0], back[1])
-        )
+        self.material = KinematicMaterial(MU, curve, np.ones(1), BackStressFields(*back))
         self.state = self.material.virgin((1, 1, 1))
 
     def at(self, strain):
@@ -46,11 +44,10 @@ class SamPoint:
 class FemPoint:
     """One Gauss point, likewise; its shears come in another order, which one shear alone does not tell."""
 
-    def __init__(self, curve, modulus, recovery, factor=1.0):
+    def __init__(self, curve, modulus, recovery):
         back = [np.reshape(np.array(values, dtype=float), (-1, 1, 1)) for values in (modulus, recovery)]
-        factors = np.full((1, 1), factor)
-        constants = BackStresses(factor * back[0], back[1])
-        self.material = KinematicJ2(Elastic(YOUNG, POISSON), curve, factors, constants, shears=3)
+        elastic, factors = Elastic(YOUNG, POISSON), np.ones((1, 1))
+        self.material = KinematicJ2(elastic, curve, factors, BackStresses(*back), shears=3)
         self.state = History.virgin((1, 1), 6, len(modulus))
 
     def at(self, strain):
@@ -68,34 +65,22 @@ POINTS = {"sam": SamPoint, "fem": FemPoint}
 
 
 class Specimen:
-    """A material point whose components are moved by strain or by stress; all others are free of stress."""
+    """A material point some of whose components are strained; all others are free of stress."""
 
     def __init__(self, point):
         self.point, self.strain, self.stress = point, np.zeros(6), np.zeros(6)
 
-    def to(self, *, strain=None, stress=None):
-        """Moves in one step. strain, stress: component -> value in 1 and in Pa."""
-        given, wanted = strain or {}, stress or {}
-        free = [i for i in range(6) if i not in given]
-        total = self.strain.copy()
-        total[list(given)] = list(given.values())
+    def to(self, strain):
+        """Moves in one step. strain: component -> value in 1."""
+        free, total = [i for i in range(6) if i not in strain], self.strain.copy()
+        total[list(strain)] = list(strain.values())
 
         def off(values):
             total[free] = values
-            found = self.point.at(total)[0]
-            return [(found[i] - wanted.get(i, 0.0)) / YOUNG for i in free]
+            return self.point.at(total)[0][free] / YOUNG
 
         if free:
             total[free] = fsolve(off, self.strain[free], xtol=1e-13, full_output=True)[0]
             assert np.abs(off(total[free])).max() < 1e-12
         self.strain = total
         self.stress, self.point.state = self.point.at(total)
-
-    def by_strain(self, component, ends, steps=1):
-        """Moves one component from end to end in equal steps; the stress (Pa) and plastic strain at each."""
-        found = []
-        for end in ends:
-            for value in np.linspace(self.strain[component], end, steps + 1)[1:]:
-                self.to(strain={component: value})
-            found.append((self.stress[component], self.point.plastic[0][component]))
-        return found

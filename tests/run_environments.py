@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The suite in one environment after another; each changes one thing that a machine decides, and no
-other.
+"""The suite in one environment after another; each changes one thing that a machine decides, and no other.
 
 python tests/run_environments.py [NAME ...] [--out FILE] [-- ARGUMENT OF PYTEST ...]
 
-PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on
-this machine is not counted as a test of anything. Prints a row for each as it ends, and the whole
-output of pytest where a test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
+PROBE is run in each one first; `holds` reads its answer, so that a change which had no effect on this machine
+is not counted as a test of anything. Prints a row for each as it ends, and the whole output of pytest where a
+test failed. Exit code 1 if one failed anywhere, 2 for a wrong name.
 """
 
 import argparse
@@ -31,8 +30,8 @@ LATEST = ".git|.venv*|latest*|__pycache__|.pytest_cache|.hypothesis|.ruff_cache|
 LIMIT_S, PROBE_LIMIT_S = 3600.0, 120.0
 COLUMNS = ("environment", "change", "BLAS of numpy, scipy (threads)", "outcome")
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
-NOBODY, STRANGER = 65534, 54321
-"""Numbers of an ordinary user, and of one that the machine does not know, as containers use them."""
+STRANGER = 54321
+"""Number of an ordinary user that the machine does not know, as containers use them."""
 HOMES = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "USER", "LOGNAME")
 LANGUAGE = ("LC_ALL", "LC_CTYPE", "LANG", "PYTHONUTF8", "PYTHONCOERCECLOCALE", "PYTHONIOENCODING")
 SCREEN = ("TERM", "COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR")
@@ -81,10 +80,9 @@ class NotHereError(Exception):
 class Environment:
     """One change of what a machine decides.
 
-    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the
-    words before a command, raises NotHereError; owner: number of the user whom a copy of the
-    checkout is given to, and who runs it; holds: whether a probe shows the change, given the one
-    without it.
+    variables: None takes one away; options: of pytest; around: (checkout, scratch folder) -> the words before
+    a command, raises NotHereError; owner: number of the user whom a copy of the checkout is given to, and who
+    runs it; holds: whether a probe shows the change, given the one without it.
     """
 
     says: str
@@ -204,12 +202,6 @@ def environments() -> dict[str, Environment]:
             nobody,
             owner=STRANGER,
             holds=lambda probe, plain: probe["user"] == STRANGER and probe["home"] == "~",
-        ),
-        "user": Environment(
-            "an ordinary user instead of root",
-            {**nobody, "HOME": "home"},
-            owner=NOBODY,
-            holds=lambda probe, plain: probe["user"] == NOBODY,
         ),
         "read-only": Environment(
             "the checkout cannot be written",

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from builders import MODULUS, RADIUS, SPHERE, SWIFT, scene as small_scene
+from builders import MODULUS, RADIUS, SPHERE, scene as small_scene
 
 import fem_reference
 import fem_reference.spatial
@@ -83,24 +83,6 @@ def test_record():
     assert z[first] == pytest.approx(interface, rel=1e-12)  # the first row of the body
     plane = np.asarray(result.tables["plane"]["z_m"])
     assert not np.isclose(plane, interface, rtol=1e-6).any()  # Gauss points, none on the interface
-
-
-def test_resumed_equals_uninterrupted():
-    """From every checkpoint, of the coated contact and of the bare one that follows: the same bits."""
-    loading = {"steps": 2, "unload": True}
-    s = scene(0.05, flow=0.67e9, p0=5e9, loading=loading, body={"plasticity": SWIFT})
-    kept, seen = [], []
-    whole = fem_reference.solve(s, progress=lambda *step: seen.append(step), checkpoint=kept.append)
-    assert seen == [("contact", k, 4) for k in range(1, 5)]
-    # the coating flows back in unloading: two steps of it, not one
-    assert [c.done for c in kept] == [1, 2, 3, 4, 5, 6] and kept[-1].total == 6
-    for start in kept:
-        again = fem_reference.solve(s, start=start)
-        assert again.quantities == whole.quantities
-        assert again.cost["newton_iterations"] == whole.cost["newton_iterations"]
-        for name, table in whole.tables.items():
-            for column, values in table.items():
-                np.testing.assert_array_equal(again.tables[name][column], values)
 
 
 def test_other_contacts():

@@ -29,13 +29,13 @@ SHEAR = YOUNG / (2 * (1 + POISSON))
 LAME = YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
 
 
-def ring(n=3, inner=0.0, twist=0.05, element=None, poisson=POISSON):
-    """n x n elements of [inner, inner + 1] x [0, 1]; twist moves the inner nodes."""
+def ring(n=3, twist=0.05, poisson=POISSON):
+    """n x n elements of [0, 1] x [0, 1]; twist moves the inner nodes."""
     x = np.linspace(0.0, 1.0, n + 1)
-    mesh = MeshQuad.init_tensor(inner + x, x)
-    bump = twist * np.sin(np.pi * (mesh.p[0] - inner)) * np.sin(np.pi * mesh.p[1])
+    mesh = MeshQuad.init_tensor(x, x)
+    bump = twist * np.prod(np.sin(np.pi * mesh.p), axis=0)
     mesh = MeshQuad(mesh.p + bump * np.array([[1.0], [-0.7]]), mesh.t)
-    return AxisymmetricSolid(mesh, Elastic(YOUNG, poisson), element=element)
+    return AxisymmetricSolid(mesh, Elastic(YOUNG, poisson))
 
 
 def cube(n=2, twist=0.08, **options):

@@ -8,7 +8,6 @@ from rounding import close
 
 import fem_reference
 from fem_reference.axisymmetric import planner
-from fem_reference.common import contact, loading
 from fem_reference.common.bodies import expected_radius
 from fem_reference.common.contact import ActiveSet
 from fem_reference.common.hertz import force_of_approach
@@ -129,17 +128,6 @@ def test_status_not_converged(monkeypatch):
     monkeypatch.setattr(ActiveSet, "update", restless)
     result = fem_reference.solve(scene())
     assert result.status is Status.NOT_CONVERGED and "did not settle" in result.message
-
-
-def test_cut_limit_is_a_status(monkeypatch):
-    """A step that fails at every size: the result keeps the steps up to there, and has no unloaded state."""
-    monkeypatch.setattr(contact, "MAX_ITERATIONS", 2)
-    monkeypatch.setattr(loading, "MOST_CUTS", 1)
-    result = fem_reference.solve(scene(plasticity=PERFECT, force=hertz_force(4e9), steps=2, unload=True))
-    assert result.status is Status.STEP_CUT_LIMIT and "loading.steps" in result.message
-    history, residuals = result.tables["history"], result.tables["residuals"]
-    assert len(history["step"]) < 3 and max(residuals["step"]) not in history["step"]
-    assert result.quantities["residual_uz_center_m"] is None
 
 
 def test_refusals_name_the_key():

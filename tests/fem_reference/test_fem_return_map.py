@@ -178,7 +178,7 @@ def test_tangent_with_back_stresses_is_the_derivative_of_the_stress(curve, law, 
     point = FemPoint(curve, *law)
     specimen = Specimen(point)
     for _ in range(4):
-        specimen.to(strain=dict(enumerate(0.01 * rng.standard_normal(6))))
+        specimen.to(dict(enumerate(0.01 * rng.standard_normal(6))))
     start = point.state
     at = (specimen.strain + 0.02 * rng.standard_normal(6)) * [1, 1, 1, 2, 2, 2]
 

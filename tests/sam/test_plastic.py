@@ -127,13 +127,6 @@ def test_a_step_too_large_is_cut(monkeypatch):
     assert "cut into" in result.tables["history"]["note"][0]
 
 
-def test_a_step_that_cannot_converge_ends_in_the_cut_limit(monkeypatch):
-    monkeypatch.setattr(plastic_step, "ITERATIONS", 1)
-    monkeypatch.setattr(plastic_step, "LONG_ITERATIONS", 1)
-    result = sam.solve(yielding(3, PERFECT, grid=SMALL))
-    assert result.status is Status.STEP_CUT_LIMIT and "steps" in result.message
-
-
 def test_the_result_says_how_many_steps_needed_the_longer_iteration(monkeypatch):
     """From the first step that halving would not bring to converge; the answer is the same."""
     given = yielding(2.5, PERFECT, grid=SMALL, loading={"steps": 2})

@@ -61,14 +61,6 @@ def test_solve_replaces_an_older_result_and_python_gives_the_same(folder, samfem
     assert run.quantities == sam.solve(sam.scene.load_scene(folder / "coarse.toml")).quantities
 
 
-def test_a_solve_that_does_not_converge_says_what_to_change_and_still_writes(folder, samfem):
-    text = scene_text(add='[grid]\ncells = [33, 33]\nextent = ["4 um", "4 um"]\n')
-    (folder / "edge.toml").write_text(text)
-    message = samfem("solve", "edge.toml", code=1).err
-    assert "contact-at-grid-edge" in message and "raise grid.extent" in message
-    assert read_run(folder / "edge-sam").summary["status"] == "contact-at-grid-edge"
-
-
 @pytest.mark.parametrize("target", ["sphere.toml", "sphere.toml/run", ".", "x" * 300])
 def test_a_folder_that_must_not_be_written_to_is_refused_before_solving(refused, monkeypatch, target):
     monkeypatch.setattr(models, "solve", lambda *_: pytest.fail("solved"))

@@ -48,10 +48,6 @@ LEAVES = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text
 COUNT = len(TURNS)
 
 
-def number_of(kind: str, turn: int = 0) -> int:
-    return tuple(KINDS).index(kind) + turn * COUNT
-
-
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     tally = case.judge_readers(range(12 * COUNT), tmp_path)
@@ -214,7 +210,8 @@ def test_a_reader_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, read
 def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, code, gates):
     if gates == {"hangs"}:
         monkeypatch.setattr(case, "COMMAND_LIMIT_S", 0.3)
-    assert red(case.judge_commands([number_of("values")], tmp_path, (sys.executable, "-c", code))) == gates
+    one = [tuple(KINDS).index("values")]
+    assert red(case.judge_commands(one, tmp_path, (sys.executable, "-c", code))) == gates
 
 
 def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):

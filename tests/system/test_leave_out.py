@@ -94,8 +94,7 @@ NEEDS: dict[str, dict[str, str]] = {
     },
 }
 """Of each model: stages of a plan, those that it must not have after "not" -> kinds of work (see
-ladder.PROBES) that they need together, and after the bar those that the program is free to do
-without.
+ladder.PROBES) that they need together, and after the bar those that the program is free to do without.
 """
 OF_FEM = """elastic sphere; unloaded; cycles; elastic counter-body; rounded edge; no friction after all;
 no force; coated; given load; plastic; back-stresses; plastic, unloaded; plastic cycles;
@@ -229,9 +228,8 @@ def test_transforms_that_a_scene_has_no_use_for():
 
 
 def test_stresses_are_evaluated_once_for_a_state_and_the_elastic_peak_is_solved_once():
-    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of
-    every depth once. One elastic solution says whether a body yields, and where plastic strain is
-    first looked for.
+    """Of an elastic scene that is unloaded at its peak, and the zeros after it: coefficients of every depth
+    once. One elastic solution says whether a body yields, and where plastic strain is first looked for.
     """
     ran = ran_in(SAM, "unloaded")
     assert ran["work"]["stress in y = 0"][0] == 2

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A body with back-stresses under a Hertz pressure that comes and goes, in both models: what a
-result holds of them, and nothing of them without the table. Limits and verdicts are rows of
-`repeated-loading`.
+"""A body with back-stresses under a Hertz pressure that comes and goes, in both models: what a result holds
+of them, and nothing of them without the table. Limits and verdicts are rows of `repeated-loading`.
 """
 
 from __future__ import annotations
@@ -11,7 +10,6 @@ import pytest
 
 from fem_reference.common.back_stress import KinematicJ2
 from sam.plasticity.flow import KinematicFlow
-from sam.plasticity.model import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve
@@ -60,15 +58,6 @@ def fields_of(result):
 def largest(field):
     """Its largest value; SAM has no stresses on the surface."""
     return float(np.nanmax(field))
-
-
-def test_with_pragers_law_the_back_stress_follows_the_plastic_strain():
-    """a = eps_p in every cell and component, shears of both halves of a mirrored box included."""
-    kept = []
-    solve(pressed(1.15 * MELAN * YIELD, PRAGER), SAM, checkpoint=kept.append)
-    material = kept[-1].record(Progressed).state.material.points
-    assert np.abs(material.strain[3:]).max() > 1e-3
-    assert np.abs(material.back[0] - material.strain).max() < 1e-12
 
 
 @pytest.mark.parametrize("model", [SAM, FEM])

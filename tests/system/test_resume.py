@@ -33,9 +33,9 @@ class StoppedError(Exception):
     """In place of a kill."""
 
 
-def sphere(plasticity=SWIFT, counterbody=SPHERE, solver=None, **loading) -> Scene:
+def sphere(plasticity=SWIFT, counterbody=SPHERE, *, coating=None, solver=None, **loading) -> Scene:
     return scene(
-        body={"plasticity": plasticity},
+        body={"plasticity": plasticity, "coating": coating},
         counterbody=counterbody,
         loading={"force": 0.171424, "steps": 4, "unload": True, **loading},
         grid={"cells": (17, 17)},
@@ -80,6 +80,8 @@ FALLING = running_in(
     wear={"strain_limit": 0.002, "strain_limit_layer": 0.004, "roof": "falls", "smoothing_fills": True},
     solver={"method": "paper", "tolerance": 1e-3},
 )
+FILM = {"thickness": 0.3e-6, "young": 80e9, "poisson": 0.3, "yield_stress": 0.67e9}
+MOVED = sphere(path={"start": (-0.7e-6, 0.0), "end": (0.7e-6, 0.0), "steps": 1}, steps=1, cycles=2)
 RUN_IN_BACK = RUN_IN_STEEL | {"kinematic": CHABOCHE}
 
 
@@ -112,6 +114,8 @@ CASES = {
     "SAM, paper, film, a roof falls, the filter fills": (SAM, FALLING, None),
     "FEM, judged": (FEM, judged(), None),
     "FEM, three dimensions, back-stresses": (FEM_3D, RUBBED, None),
+    "FEM, coated, the bare contact after it": (FEM, sphere(coating=FILM, steps=2), None),
+    "FEM, three dimensions, passes": (FEM_3D, MOVED, None),
     "FEM, cut steps": (FEM, sphere(PERFECT, force=0.0685, steps=2), None),
     "FEM, unloading in steps": (FEM, PUNCH, None),
     "FEM, given approach": (FEM, sphere(force=None, approach=0.1e-6), None),
@@ -194,6 +198,8 @@ def is_what_its_name_says(name: str, result, made: list[Path]) -> None:
         assert len({read_archive(path)[1]["tree"]["extent"]["layers"] for path in made}) > 1
     if name == "FEM, cut steps":
         assert result.cost["step_cuts"] > 0
+    if "the bare contact" in name:
+        assert len(made) > len(result.tables["history"]["step"])
     if "unloading in steps" in name:
         history = result.tables["history"]
         assert history["step"] == [1, 2, 3, 4, 5] and history["note"][-1] == ""
@@ -201,9 +207,8 @@ def is_what_its_name_says(name: str, result, made: list[Path]) -> None:
 
 @pytest.mark.parametrize("model", [SAM, FEM])
 def test_a_solve_that_breaks_off_leaves_checkpoints_as_good(model, tmp_path):
-    """The callback raises: what it was given before does not change, and no caller's array is
-    written to later. Its arrays are numbers in C order: a file gives them back in it, and sums go
-    along the memory.
+    """The callback raises: what it was given before does not change, and no caller's array is written to
+    later. Its arrays are numbers in C order: a file gives them back in it, and sums go along the memory.
     """
     scene = sphere()
     expected = contents(models.solve(scene, model), scene, tmp_path / "whole")

@@ -15,7 +15,7 @@ from builders import scene_text
 from samfem.cli import main
 from verification.runs import checkpoints, files, models
 from verification.runs.archive import read_archive, write_archive
-from verification.runs.files import CHECKPOINT, FolderError, check_target
+from verification.runs.files import CHECKPOINT
 from verification.runs.models import FEM, SAM
 
 PLASTIC = '[body.plasticity]\nlaw = "swift"\nB = "945 MPa"\nC = 20\nn = 0.121\n'
@@ -235,11 +235,3 @@ def test_an_interval_that_is_no_number_of_seconds_is_refused(solve, monkeypatch,
     monkeypatch.setenv(checkpoints.INTERVAL, text)
     assert f"SAMFEM_CHECKPOINT_S = {text}: a number of seconds >= 0 is needed" in solve(code=2).err
     assert not OUT.exists()
-
-
-def test_a_folder_with_a_checkpoint_alone_is_the_folder_of_a_run(tmp_path):
-    (tmp_path / CHECKPOINT).write_bytes(b"")
-    check_target(tmp_path)
-    (tmp_path / "thesis.doc").write_bytes(b"")
-    with pytest.raises(FolderError, match=r"thesis\.doc"):
-        check_target(tmp_path)

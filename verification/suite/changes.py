@@ -48,7 +48,7 @@ def lost(before: Mapping, after: Mapping, rows: Mapping[str, str]) -> list[str]:
     """
     new, found = {gate["id"]: gate for gate in after["gates"]}, []
     for old in before["gates"]:
-        now = new.get(rows.get(old["id"], ""))
+        now, sign = new.get(rows.get(old["id"], "")), -1 if old["metric"] == "at_least" else 1
         if old["id"] not in rows:
             found.append(f"{old['id']}: the table has no entry for it")
         elif now is None:
@@ -56,16 +56,11 @@ def lost(before: Mapping, after: Mapping, rows: Mapping[str, str]) -> list[str]:
                 found.append(f"{old['id']}: there is no gate {rows[old['id']] or 'for it'}")
         elif now["metric"] != old["metric"]:
             found.append(f"{old['id']}: metric {now['metric']}, was {old['metric']}")
-        elif _wider(old, now):
+        elif sign * now["tolerance"] > sign * old["tolerance"]:
             found.append(f"{old['id']}: tolerance {now['tolerance']:g}, was {old['tolerance']:g}")
         elif (now.get("points") or 1) < (old.get("points") or 0):
             found.append(f"{old['id']}: {now['points']} points, were {old['points']}")
     return found
-
-
-def _wider(old: Mapping, new: Mapping) -> bool:
-    first, second = old["tolerance"], new["tolerance"]
-    return second < first if old["metric"] == "at_least" else second > first
 
 
 def grown(before: Mapping, after: Mapping) -> list[str]:

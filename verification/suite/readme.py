@@ -41,20 +41,15 @@ def renewed(text: str, results: Mapping) -> str:
             state = gate["status"] if gate else "no gate"
             raise ValueError(f"{name}: {state}; the row needs a gate that passed")
         value = gate["error"] * (100 if unit == "%" else 1)
-        return f"| {_like(printed, value)} {unit} | `{name}` |"
+        digits = len(printed.replace(".", "").lstrip("0"))
+        after = digits - 1 - math.floor(math.log10(value)) if value > 0.0 else 0
+        return f"| {value:.{max(after, 0)}f} {unit} | `{name}` |"
 
     text = ROW.sub(row, text)
     if marks == (0, 0):
         return text
     before, rest = text.split(BEGIN)
     return f"{before}{BEGIN}\n{_written(results)}\n{END}{rest.split(END)[1]}"
-
-
-def _like(printed: str, value: float) -> str:
-    """A value with as many digits as were printed."""
-    digits = len(printed.replace(".", "").lstrip("0"))
-    after = digits - 1 - math.floor(math.log10(value)) if value > 0.0 else 0
-    return f"{value:.{max(after, 0)}f}"
 
 
 def _written(results: Mapping) -> str:

@@ -276,7 +276,8 @@ def _judged(
     failures = {name: each.failure for name, each in ran.items()}
     verdicts = evaluate(_rows(known), {name: each.outcome.values for name, each in ran.items()}, failures)
     inputs = {name: content for each in ran.values() for name, content in each.context.inputs.items()}
-    gates = stays.among(_gate_record(verdict) for verdict in verdicts)
+    records = (verdict.row.model_dump() | asdict(verdict) for verdict in verdicts)
+    gates = stays.among(plain({name: each[name] for name in each if name != "row"}) for each in records)
     collected = provenance.collect(inputs)
     cases = []
     for case in known.values():
@@ -375,12 +376,6 @@ def _sources(context: Context) -> dict[str, dict]:
         run: asdict(source) | {"note": provenance.without_places(source.note, *folders)}
         for run, source in context.sources.items()
     }
-
-
-def _gate_record(verdict: Verdict) -> dict:
-    record = verdict.row.model_dump() | asdict(verdict)
-    del record["row"]
-    return plain(record)
 
 
 def _write(

@@ -368,7 +368,6 @@ def _page(template: str, stored: Stored, look: Look, **shown: Any) -> str:
     text = environment.get_template(template).render(
         css=css,
         groups=[group for group, _ in _groups(stored)],
-        statuses=RowStatus,
         results=stored.results,
         stale=stored.stale,
         words=words,
