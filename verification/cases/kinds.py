@@ -44,7 +44,7 @@ from verification.figures.maps import (
 )
 from verification.figures.profiles import Profile, against_fem, profiles, residual_surface
 from verification.figures.style import BLACK, Drawing
-from verification.quantities import Solved, ladders, planes, strain_below
+from verification.quantities import Solved, ladders, of_passes, planes, strain_below
 from verification.reference.convergence import extrapolate
 from verification.references import REFERENCES, coated_contact, contact_of
 from verification.rows import CaseFile
@@ -329,6 +329,24 @@ def _grooves(found: Solved) -> Plot:
     return Plot(drawing, "groove", "Groove of one pass in both models", words)
 
 
+def _new_strains(file: CaseFile, found: Mapping[str, Solved]) -> Iterator[Plot]:
+    """What each pass adds, a figure a variant."""
+    for variant, solved in found.items():
+        strains = {
+            label_of(file, "run", name): of_passes(each, "strain") for name, each in solved.results.items()
+        }
+        drawn = {name: Curve(np.arange(1, own.size + 1), own) for name, own in strains.items()}
+        floors = sorted({float(each.verdict["floor"]) for each in solved.results.values()})
+        how = {"marks": {"floor of the verdict": ("y", *floors)}, "size": (6.6, 3.2)}
+        label = "largest plastic strain that a pass adds"
+        drawing = curves({"": drawn}, "pass", label, logarithmic="y", count=True, **how)
+        text = (
+            "The figure shows the largest plastic strain that each pass adds to a cell of the steady part of "
+            f"the track, {file.variants[variant]['words']}; below a floor the verdict counts none."
+        )
+        yield Plot(drawing, f"new-strain-{variant}", "What each pass adds", text)
+
+
 _punch = partial(
     *(_along, ("line", "p_Pa"), ("line", "uz_m"), ("axis", "mises_Pa")),
     name="profiles",
@@ -518,5 +536,6 @@ VIEWS: Mapping[str, View] = {
 OVER_VARIANTS: Mapping[str, Callable[[CaseFile, Mapping[str, Solved]], Iterator[Plot]]] = {
     "strain-profiles": _strain_profiles,
     "strain-of-cycles": _strain_of_cycles,
+    "new-strains": _new_strains,
 }
 """The same of all variants of a scene."""

@@ -19,6 +19,7 @@ from verification.figures.style import (
     BLACK,
     BLUE,
     GREEN,
+    GUIDE,
     ORANGE,
     RC,
     VERMILION,
@@ -79,6 +80,23 @@ MORE = {
     "friction_coefficient": ("coefficient of friction", 1.0),
     "wear_volume_m3": ("wear volume [$\\mu$m$^3$]", 1e18),
 }
+
+
+def probabilities(rows: Sequence[tuple[str, int, int, tuple[float, float]]]) -> Drawing:
+    """A bar with bounds for each statement. rows: words, points at which it holds, of how many, bounds."""
+    table = Columns("statement", "holds", "of", "low", "high")
+    names, held, of, bounds = (list(each) for each in zip(*rows[::-1], strict=True))
+    low, high = np.array(bounds).T
+    with sheet(7.2, 0.8 + 0.24 * len(names)) as (figure, axis):
+        _bars(axis, names, np.array(held) / np.maximum(of, 1), (low, high), color="#9fc8e3")
+        for k, (yes, every) in enumerate(zip(held, of, strict=True)):
+            place = {"va": "center", "fontsize": 8.0, "transform": axis.get_yaxis_transform()}
+            axis.text(1.02, k, f"{yes} of {every}", **place)
+        axis.axvline(0.5, color=BLACK, linewidth=0.6, gid=GUIDE)
+        label = "share of points at which the statement holds"
+        axis.set(xlabel=label, xlim=(0.0, 1.0), ylim=(-0.7, len(names) - 0.3))
+    table.add(names, held, of, low, high)
+    return Drawing(figure, table)
 
 
 def sensitivity_figure(rows: Sequence[Mapping], path: Path) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import binomtest, norm
 
 from sam.scene import Scene
-from verification.cases.case import Context, DataFrame, Measured, SmallTable, with_keys, with_loading
+from verification.cases.case import Context, DataFrame, Measured, Plot, SmallTable, with_keys, with_loading
 from verification.cases.running_in import study
 from verification.cases.running_in.study import (
     BULK,
@@ -30,6 +30,7 @@ from verification.cases.running_in.study import (
     Reading,
     Readings,
 )
+from verification.figures.specials import probabilities
 from verification.sensitivity import UNIFORM, design
 
 SURFACES = 100  # seeds of surfaces count from here, and are no others'
@@ -304,6 +305,22 @@ class RunningInSensitivity(Readings):
         yield from self.told_of_campaign(found.frame)
         if found.judged:
             yield fitted_note(found)
+
+    def figures(self, found: Studied) -> Iterator[Plot]:
+        if not found.judged:
+            return
+        yield Plot(
+            probabilities(
+                [
+                    (f"{each['figure']}: {each['statement']}", each["holds"], each["of"], each["bounds"])
+                    for each in found.chances
+                ]
+            ),
+            "probabilities",
+            "Probability that a statement of the paper holds",
+            "The bars show at which share of the points each statement of the paper holds, of those at "
+            "which it says anything, with bounds of 90 %.",
+        )
 
 
 def statements_table(found: Studied) -> SmallTable:
