@@ -10,6 +10,7 @@ import pytest
 
 from fem_reference.common.back_stress import KinematicJ2
 from sam.plasticity.flow import KinematicFlow
+from sam.plasticity.model import Progressed
 from sam.scene import Scene
 from sam.scene.verdict import ORDER
 from verification.runs.models import FEM, SAM, solve
@@ -29,6 +30,15 @@ def pressed(p0, kinematic, **loading):
         fem={"cells_per_radius": 4, "box": 6.0},
         solver={"tolerance": 1e-4},
     )
+
+
+def test_with_pragers_law_the_back_stress_follows_the_plastic_strain():
+    """a = eps_p in every cell and component, shears of both halves of a mirrored box included."""
+    kept = []
+    solve(pressed(1.15 * MELAN * YIELD, PRAGER), SAM, checkpoint=kept.append)
+    material = kept[-1].record(Progressed).state.material.points
+    assert np.abs(material.strain[3:]).max() > 1e-3
+    assert np.abs(material.back[0] - material.strain).max() < 1e-12
 
 
 @pytest.mark.parametrize("model", [SAM, FEM])
