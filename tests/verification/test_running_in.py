@@ -230,7 +230,6 @@ class TestReadings:
         rows = {row[1]: row for row in next(iter(CASE.tables(found))).rows}
         assert rows["bulk: worn in the first six cycles"][9:] == ["0 of 10, none on 10", OPEN, OPEN]
         names = ["readings", "yield", *NAMES, *(f"{RENEWED}-{name}" for name in NAMES if name != BULK)]
-        assert [plot.name for plot in CASE.figures(found)] == names
-        views = {view.name: view.run for view in CASE.views(found)}
-        assert views[f"{A}-worn"] == f"{A}-seed-2"
-        assert views[f"renewed-{DUCTILE}-worn"] == f"renewed-{DUCTILE}-seed-1"
+        plots = {plot.name: plot.caption for plot in CASE.figures(found)}
+        assert list(plots) == names and "on our surface 1 alone" in plots[f"renewed-{DUCTILE}"]
+        assert {view.name: view.run for view in CASE.views(found)}[f"{A}-worn"] == f"{A}-seed-2"
