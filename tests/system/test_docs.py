@@ -80,30 +80,6 @@ def fragments() -> list[tuple[str, list[str]]]:
     return found
 
 
-def accept(parts: list[str], folder: Path) -> None:
-    """Raises unless the last part is a study, a case, or makes a scene with the parts before it and
-    that of `samfem new plastic`; of [body] a part changes only the keys that it gives.
-    """
-    shutil.copy(STARTS / "plastic.toml", folder / "sphere.toml")
-    for name in ("curve-b.csv", "pin.csv"):
-        shutil.copy(ROOT / "verification" / "scenes" / name, folder)
-    kind = tomllib.loads(parts[-1])
-    if "rows" in kind:
-        (folder / "hertz-ellipse.toml").write_text(parts[-1], encoding="utf-8")
-        assert read_cases(folder / "hertz-ellipse.toml")[0].rows
-    elif "vary" in kind:
-        (folder / "study.toml").write_text(parts[-1], encoding="utf-8")
-        read_study(folder / "study.toml")
-    else:
-        scene = tomllib.loads((STARTS / "plastic.toml").read_text(encoding="utf-8"))
-        for part in parts:  # no file of an instrument is shipped: heights in CSV take its place
-            changes = tomllib.loads(part.replace("pin.al3d", "pin.csv"))
-            scene = scene | changes | {"body": scene["body"] | changes.get("body", {})}
-            if "prescribed" in scene["loading"]:
-                scene.pop("counterbody", None)
-        scene_of(scene, "fragment", Inputs(folder))
-
-
 def test_the_readme_is_short_and_its_example_is_that_of_the_command():
     """The times and the memory of the plan alone are those of a machine."""
     assert len(README.splitlines()) <= LONGEST_README
@@ -156,5 +132,25 @@ def test_the_guide_has_every_quantity_with_its_unit():
 
 
 @pytest.mark.parametrize("where, parts", fragments(), ids=[found[0] for found in fragments()])
-def test_every_fragment_of_a_scene_or_study_is_accepted(tmp_path, where, parts):
-    accept(parts, tmp_path)
+def test_every_fragment_of_a_scene_or_study_is_accepted(folder, where, parts):
+    """The last part is a study, a case, or makes a scene with the parts before it and that of `samfem new
+    plastic`; of [body] a part changes only the keys that it gives.
+    """
+    shutil.copy(STARTS / "plastic.toml", folder / "sphere.toml")
+    for name in ("curve-b.csv", "pin.csv"):
+        shutil.copy(ROOT / "verification" / "scenes" / name, folder)
+    kind = tomllib.loads(parts[-1])
+    if "rows" in kind:
+        (folder / "hertz-ellipse.toml").write_text(parts[-1], encoding="utf-8")
+        assert read_cases(folder / "hertz-ellipse.toml")[0].rows
+    elif "vary" in kind:
+        (folder / "study.toml").write_text(parts[-1], encoding="utf-8")
+        assert read_study(folder / "study.toml")
+    else:
+        scene = tomllib.loads((STARTS / "plastic.toml").read_text(encoding="utf-8"))
+        for part in parts:  # no file of an instrument is shipped: heights in CSV take its place
+            changes = tomllib.loads(part.replace("pin.al3d", "pin.csv"))
+            scene = scene | changes | {"body": scene["body"] | changes.get("body", {})}
+            if "prescribed" in scene["loading"]:
+                scene.pop("counterbody", None)
+        assert scene_of(scene, "fragment", Inputs(folder)).body
