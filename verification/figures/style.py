@@ -194,7 +194,7 @@ def save(
 
 
 def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
-    """A figure as PDF, or as PNG; small: with a palette of 256 colours that keeps those of lines."""
+    """A figure as PDF, or as PNG; small: with a palette of 256 colours."""
     buffer, smaller = io.BytesIO(), io.BytesIO()
     with style():
         figure.savefig(
@@ -202,10 +202,9 @@ def encoded(figure: Figure, *, pdf: bool = False, small: bool = True) -> bytes:
         )
     if pdf or not small:
         return buffer.getvalue()
-    maps = any(map(fields_of, figure.axes))  # of whose colours k-means takes ten times as long as the rest
-    method, kmeans = (Image.Quantize.MEDIANCUT, 0) if maps else (Image.Quantize.MAXCOVERAGE, 3)
     picture = Image.open(buffer).convert("RGB")
-    picture = picture.quantize(256, method, kmeans=kmeans, dither=Image.Dither.NONE)
+    # colours that cover all that are there: those of few pixels, as in a colour bar, stay what they are
+    picture = picture.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     picture.save(smaller, "PNG", optimize=True, dpi=(DPI, DPI))
     return smaller.getvalue()
 

@@ -43,19 +43,21 @@ def curves(solves: DataFrame, ylabel: str) -> Drawing:
 
 
 def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
-    """Rows: kind of scene -> method -> time to one error; hollow where it is an upper bound."""
+    """Rows: kind of scene -> method -> time to one error; an arrow where it is an upper bound."""
     rows = Columns("kind", "method", "cpu_s", "upper_bound")
-    there = dict.fromkeys(name for found in times.values() for name in found)
+    there = dict.fromkeys(name for found in times.values() for name, one in found.items() if one.value)
     with sheet(8.4, max(0.9 + 0.42 * len(times), 2.6)) as (figure, axis):
         for name in there:
-            axis.plot([], [], **LOOKS[name] | {"linestyle": "none", "fillstyle": "full"}, label=name)
+            axis.plot([], [], **LOOKS[name] | {"linestyle": "none", "fillstyle": "none"}, label=name)
         for k, (kind, found) in enumerate(times.items()):
             for name, reached in found.items():
                 rows.add(kind, name, reached.value, reached.coarsest)
-                fill = "none" if reached.coarsest else "full"
-                look = LOOKS[name] | {"linestyle": "none", "markersize": 6.5, "fillstyle": fill}
-                axis.plot([np.nan if reached.value is None else reached.value], [k], **look)
-        axis.set_yticks(range(len(times)), list(times))
+                look = LOOKS[name] | {"linestyle": "none", "markersize": 6.5, "fillstyle": "none"}
+                value = np.nan if reached.value is None else reached.value
+                bound = [0.25 * value] if reached.coarsest else None
+                axis.errorbar([value], [k], xerr=bound, xuplims=reached.coarsest, **look)
+        known = {kind: any(one.value for one in found.values()) for kind, found in times.items()}
+        axis.set_yticks(range(len(times)), [f"{kind}{': not reached' * (not known[kind])}" for kind in times])
         words = f"processor time to an error of {error} [s]"
         axis.set(xscale="log", ylim=(len(times) - 0.5, -0.5), xlabel=words)
         if not any(rows["cpu_s"]):

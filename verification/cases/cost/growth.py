@@ -25,7 +25,7 @@ EXPONENTS = {
     "elastic stresses at all depths, in cells": ("stresses", "further-s", 0),
     f"{OPERATOR}, dense, an application, in cells of the box": ("operator-dense", "cpu-s", 0),
     f"{OPERATOR}, swept, more cells in the plane, in cells of the box": ("operator-plane", "cpu-s", 0),
-    f"{OPERATOR}, swept, more layers, in cells of the box": ("operator-depth", "cpu-s", 0),
+    f"{OPERATOR}, swept, more layers, in layers of 128 × 128 cells": ("operator-depth", "cpu-s", 0),
     f"{OPERATOR}, swept, set-up, in cells of the box": ("operator-plane", "set-up-s", 0),
     "running-in, whole solve, in cycles": ("cycles", "cpu-s", 2),
     "axisymmetric finite elements, elastic, in unknowns": ("axisymmetric", "cpu-s", 0),

@@ -316,9 +316,10 @@ def advice(file: CaseFile, frame: DataFrame) -> Plot:
         Drawing(overview(to_1_percent, "1 %").figure, data),
         "advice",
         "Processor time to 1 %",
-        "The figure compares the processor time that each method needs for an error of 1 %. A hollow mark "
-        "is an upper bound, as even the coarsest grid is better; a method without a mark does not reach 1 "
-        "%. The data are the advice of samfem plan.",
+        "The figure compares the processor time that each method needs for an error of 1 %. An arrow to the "
+        "left marks an upper bound, as even the coarsest grid is better; a method without a mark does not "
+        "reach 1 %. Two grids: quantities extrapolated from two; decoupled: the traction does not displace "
+        "the surface along z. The data are the advice of samfem plan.",
     )
 
 

@@ -172,7 +172,7 @@ def cells(file: CaseFile, frame: DataFrame) -> Plot:
         mean, *ends = (np.array([of(each) for each in shifts]) for of in (np.mean, min, max))
         drawn[f"surface {row['surface']}"] = Curve(x, mean, ends=tuple(ends))
     marks, xlabel = {"recommended": ("x", per_wave(DEFAULT))}, "cells in the shortest wave of the surface"
-    how = {"logarithmic": "x", "marks": marks, "size": (6.2, 3.6)}
+    how = {"logarithmic": "x", "ticks": "{:.3g}".format, "marks": marks, "size": (6.2, 3.6)}
     drawing = curves({"": drawn}, xlabel, "worn volume [µm³]", **how)
     drawing.figure.axes[0].set_ylim(bottom=0.0)
     return Plot(
