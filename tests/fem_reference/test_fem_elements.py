@@ -12,7 +12,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from fem_reference.axisymmetric.model import hertz_forces as ring_forces
 from fem_reference.axisymmetric.planner import Core, punch_lines, smooth_lines
 from fem_reference.common.bodies import Elastic
-from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.elasticity import stiffness_tensor
 from fem_reference.common.far_field import slanted
 from fem_reference.common.mesh_lines import Sizes, coated_depths, grow, two_sided
 from fem_reference.common.plasticity import J2, History
@@ -127,14 +127,6 @@ def test_mean_stress_is_even_in_flow_that_keeps_volume():
         stress = material.update(solid.strain(u), History.virgin(solid.points.shape[1:], 6)).stress
         spread.append(np.ptp(stress[:3].mean(axis=0), axis=1).max() / np.abs(stress[3:]).max())
     assert spread[0] < 1e-12 and spread[1] > 1.0
-
-
-def test_mises_and_hooke():
-    """Uniaxial: strain (-nu, -nu, 1, 0) s/E gives s alone, of von Mises stress s; pure shear: sqrt(3) s."""
-    stress = stiffness_tensor(YOUNG, POISSON) @ (np.array([-POISSON, -POISSON, 1.0, 0.0]) * 4.0 / YOUNG)
-    assert stress == pytest.approx([0.0, 0.0, 4.0, 0.0], abs=1e-14)
-    assert mises(stress) == pytest.approx(4.0, rel=1e-14)
-    assert mises(np.array([0.0, 0.0, 0.0, 2.0])) == pytest.approx(2.0 * np.sqrt(3.0), rel=1e-14)
 
 
 def test_a_polynomial_is_continued_exactly():

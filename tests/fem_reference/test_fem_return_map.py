@@ -55,17 +55,6 @@ def test_uniaxial_strain(law, size, factor):
     assert update.history.plastic_strain[:, 0, 0] == pytest.approx(flow, rel=1e-11)
 
 
-def test_linear_hardening_in_shear():
-    """Pure shear gamma: peeq = (sqrt(3) G gamma - Y)/(3 G + H), stress q/sqrt(3) (Simo & Hughes 1998)."""
-    gamma, hardening = 0.02, YOUNG / 20
-    update = material(CURVES["linear"]).update(column(0, 0, 0, gamma), History.virgin((1, 1)))
-    peeq = (np.sqrt(3) * SHEAR * gamma - 1000.0) / (3 * SHEAR + hardening)
-    assert update.history.peeq[0, 0] == pytest.approx(peeq, rel=1e-12)
-    assert update.stress[3, 0, 0] == pytest.approx((1000.0 + hardening * peeq) / np.sqrt(3), rel=1e-12)
-    engineering = update.history.plastic_strain[3, 0, 0]
-    assert engineering == pytest.approx(np.sqrt(3) * peeq, rel=1e-12)
-
-
 def test_elastic_inside_the_yield_surface():
     """Below yield, and on the way back: nothing changes, not even the object; no loss of stiffness."""
     start, body = History.virgin((1, 1)), material(CURVES["perfect"])

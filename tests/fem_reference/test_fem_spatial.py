@@ -51,17 +51,6 @@ def film(h, ratio=80 / 210, strength=None, poisson=NU):
     return {"coating": coating}
 
 
-def test_alternating_cycles_are_mirror_images():
-    """The second cycle of alternating friction is the first with x reversed (tolerance of the loop)."""
-    model = build(plan(scene(3, 0.4, direction="alternating", cycles=2)))
-    steps = run(model, model.plan.schedule)
-    first, second = (model.nodal_pressure(steps[k].state) for k in (0, 2))
-    loads = [(step.state.force, step.state.load.ratio) for step in steps]
-    assert loads == [(4 / 3, 0.4), (0.0, 0.4), (4 / 3, -0.4)]
-    assert second == pytest.approx(first[::-1], abs=1e-7)
-    assert np.abs(first - first[::-1]).max() > 0.05
-
-
 def test_a_load_that_travels():
     """An elastic body forgets the way: at the end of a path the state is that of the load put on there."""
     path = {"start": (-A, 0.0), "end": (A, 0.0), "steps": 2}

@@ -22,9 +22,7 @@ from fem_reference.spatial.planner import plan as spatial_plan
 from sam.plasticity.flow import (
     BackStresses,
     BackStressFields,
-    contraction,
     deviator,
-    equivalent_strain,
     kinematic_multiplier,
     mises,
     plastic_multiplier,
@@ -63,14 +61,6 @@ def test_plastic_multiplier_solves_the_return_map(name):
 
             exact = brentq(excess, 0.0, value / m3, xtol=1e-18, rtol=1e-14)
             assert gamma == pytest.approx(exact, rel=1e-9, abs=1e-17)
-
-
-def test_tensor_helpers():
-    stress = np.array([3.0, 1.0, -1.0, 0.5, -2.0, 1.5])
-    assert deviator(stress)[:3].sum() == pytest.approx(0.0)
-    full = np.array([[3.0, 1.5, -2.0], [1.5, 1.0, 0.5], [-2.0, 0.5, -1.0]])
-    assert contraction(stress, stress) == pytest.approx((full * full).sum())
-    assert equivalent_strain(np.array([-0.5, -0.5, 1.0, 0, 0, 0])) == pytest.approx(1.0)
 
 
 # back-stresses
