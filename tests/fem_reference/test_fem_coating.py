@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Coatings in the axisymmetric model: point force on a layered half-space, limits, record, refusals."""
+"""Coatings in the axisymmetric model: point force on a layered half-space, limits, record."""
 
 import numpy as np
 import pytest
 from builders import MODULUS, RADIUS, SPHERE, scene as small_scene
 
 import fem_reference
-import fem_reference.spatial
 from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.far_field import boussinesq, cerruti
 from fem_reference.common.layered_force import normal, tangential
@@ -102,25 +101,6 @@ def test_other_contacts():
         Scene(**content | {"loading": {"prescribed": "hertz", "p0": 1e9, "radius": A}})
     ).quantities
     assert q["p_max_change"] == 0.0 and q["mises_max_change"] < 0.0
-
-
-# --- refusals ---
-
-
-def test_what_is_refused():
-    """Key, value, what is allowed; all at once."""
-    wet = scene().model_dump()
-    wet["body"]["coating"] |= {"poisson": 0.5, "thickness": 10 * A}
-    soft, packages = scene(1.0, 1e13), (fem_reference, fem_reference.spatial)
-    for made, asked, words in (
-        (Scene(**wet), packages[:1], r'coating\.poisson = 0\.5: .*coating\.thickness = "60 um": from'),
-        (scene(1.0, 1e-3, box=4.0), packages[:1], r"fem\.box = 4\.0: more than .* this coated contact"),
-        # a million layers of elements otherwise
-        (soft, packages, r'coating\.young = "2\.1E\+15 GPa": less: the contact would have .* 0\.01'),
-    ):
-        for package in asked:
-            with pytest.raises(package.UnsupportedScene, match=words):
-                package.check(made)
 
 
 def test_film_that_flows_away_is_not_converged():

@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""A misfit sphere in the axisymmetric model: against closed forms, below a free surface, and refused."""
+"""A misfit sphere in the axisymmetric model: against closed forms, and below a free surface."""
 
 import numpy as np
 import pytest
 
 from fem_reference.axisymmetric.misfit import PROFILES, MisfitSphere
-from fem_reference.axisymmetric.planner import plan
 from fem_reference.axisymmetric.solution import solve
 from fem_reference.common.bodies import Elastic
-from fem_reference.common.refusals import UnsupportedScene
-from fem_reference.spatial.planner import check as check_spatial
 from sam.scene import Scene
 from verification.reference.mindlin_cheng import EigenstrainSphere
 from verification.reference.misfit_sphere import PROFILES as EXACT, GrowingSphere
@@ -83,12 +80,3 @@ def test_nothing_touches_and_an_elastic_body_forgets_the_strain():
     assert plastic.certificate["yield_excess"] < 1e-9 and plastic.quantities["peeq_max"] > 0.0
     for q in (elastic.quantities, plastic.quantities):
         assert q["approach_m"] is None and q["force_N"] == q["contact_area_m2"] == q["p_max_Pa"] == 0.0
-
-
-def test_refusals_name_the_key():
-    with pytest.raises(UnsupportedScene, match=r'loading.prescribed = "misfit-sphere"'):
-        check_spatial(sphere())
-    soft = {"law": "perfect", "yield_stress": 0.2e9}
-    with pytest.raises(UnsupportedScene, match=r'loading.depth = "15.*held'):
-        plan(sphere(soft))
-    assert plan(sphere(soft, surface="free")).misfit is not None

@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, LINEAR, STEEL, SWIFT, scene
+from builders import LINEAR, scene
 from made_results import column
 from rounding import EPS, close
 
-from fem_reference import UnsupportedScene, spatial
+from fem_reference import spatial
 from fem_reference.common.plasticity import History
 from fem_reference.common.schedule import Load
 from fem_reference.spatial import worn_cycles
@@ -106,27 +106,6 @@ def test_the_map_is_read_where_the_nodes_are():
         slice((line.size - 12) // 2, (line.size + 12) // 2) for line in (made.lines.x, made.lines.y)
     )
     assert made.weights[patch] == pytest.approx(values / 0.4)
-
-
-# --- what is refused, plan, recipe, comparison ---
-
-FILM = CHEMICAL_FILM | {"strain_limit": 0.02}
-WEAR = {"wear": {"strain_limit": 0.05}, "loading": {"force": 0.05, "unload": True}}
-
-
-@pytest.mark.parametrize(
-    ("tables", "key"),
-    [
-        ({"friction": FILM, "body": {"plasticity": SWIFT}}, "friction.law"),
-        (WEAR | {"body": {"plasticity": SWIFT}}, "wear.strain_limit"),
-        ({"counterbody": {"shape": "flat", **STEEL}}, "counterbody.young"),
-        ({"counterbody": {"shape": "punch", "radius": 5e-6}}, "counterbody.shape"),
-        ({"body": {"coating": {"thickness": 1e-7, "young": 8e10, "poisson": 0.3}}}, "body.coating"),
-    ],
-)
-def test_refused_by_name(tables, key):
-    with pytest.raises(UnsupportedScene, match=key.replace(".", r"\.")):
-        spatial.check(rough(**tables))
 
 
 def test_the_file_is_that_of_the_recipe():
