@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rough bodies in SAM: counter-bodies, borders, spots, maps in parts; running-in, each against another count."""
+"""Rough bodies in SAM: counter-bodies, borders, spots, maps in parts; running-in against other counts."""
 
 from dataclasses import replace
 
