@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings, strategies as st
 from rounding import EPS, close, of_least_squares
 
 from sam.grid.cells import Window
+from sam.plasticity.flow import equivalent_strain as norm
 from sam.scene import Wear
 from sam.wear import (
     StrainLimits,
@@ -220,10 +221,6 @@ def state(seed, faces, nx=5, ny=4, raised=()):
     shares = [0, 1e-9, 0.03, 0.4, 1.3, *raised]
     depth = rng.choice(shares, (nx, ny)) * rng.random((nx, ny)) * faces[-1]
     return strain, alpha, depth
-
-
-def norm(strain):
-    return np.sqrt(2 / 3 * ((strain[:3] ** 2).sum(axis=0) + 2 * (strain[3:] ** 2).sum(axis=0)))
 
 
 def assert_closed(before, after, removed, faces):
