@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 from builders import MODULUS, PERFECT, RADIUS, SHAPES, SPHERE, STEEL, SWIFT, hertz_force, scene as small_scene
-from rounding import close
 
 import fem_reference
 import fem_reference.spatial
@@ -70,28 +69,6 @@ def test_a_punch_is_singular_and_has_no_gap_beside_it():
     assert not line["p_Pa"][beside].any() and np.isnan(line["gap_m"][beside]).all()
     assert any("singular" in warning for warning in result.warnings)
     assert max(result.certificate.values()) < 1e-8
-
-
-def test_unloading_and_cycles():
-    """One step back to exactly nothing, with a note; later cycles repeat the first, with a note."""
-    result = fem_reference.solve(scene(steps=3, unload=True, unload_steps=5, cycles=3))
-    h = result.tables["history"]
-    assert h["cycle"] == [1] * 4 + [2] * 4 + [3] * 4 and h["step"] == [1, 2, 3, 4] * 3
-    assert h["note"][3] == "elastic: unloading in one step"
-    assert all("equal to cycle 1" in note for note in h["note"][4:])
-    for name in ("force_N", "approach_m", "contact_area_m2", "p_max_Pa"):
-        assert h[name][3] == 0.0 and h[name][4:8] == h[name][:4]
-    for table in ("axis", "line", "plane"):
-        t = result.tables[table]
-        after = t["state"] == "unloaded"
-        for name in set(t) & {"p_Pa", "uz_m", "mises_Pa", "sxx_Pa", "szz_Pa"}:
-            assert not t[name][after].any() and t[name][~after].any()
-    assert result.quantities["residual_uz_center_m"] == result.quantities["residual_mises_max_Pa"] == 0.0
-    assert result.tables["cycles"]["p_max_Pa"] == [result.quantities["p_max_Pa"]] * 3
-    line = result.tables["line"]
-    after = line["state"] == "unloaded"
-    assert line["gap_m"][after] == close(line["x_m"][after] ** 2 / (2 * RADIUS), 1e-12)
-    assert fem_reference.solve(scene()).quantities["residual_uz_center_m"] is None
 
 
 @pytest.mark.parametrize("made", [scene(force=0.0), scene(counter=PUNCH, force=0.0, steps=2, unload=True)])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from builders import PERFECT, RADIUS, SHAPES, scene
 
+import fem_reference
 import sam
 from sam import choose_grid
 from sam.contact.convolution import Counters
@@ -44,21 +45,31 @@ def test_the_gap_of_a_shape_by_hand(shape):
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-20)
 
 
-def test_history_unloading_and_cycles():
-    """Elastic: unloading in one step that says so, cycles that repeat; progress is reported, not printed."""
-    loading, seen = {"steps": 3, "unload": True, "unload_steps": 5, "cycles": 2}, []
-    result = sam.solve(scene(loading=loading, grid=FEW), progress=lambda *call: seen.append(call))
-    history = result.tables["history"]
-    assert history["cycle"] == [1] * 4 + [2] * 4 and history["step"] == [1, 2, 3, 4] * 2
-    assert history["force_N"][3] == history["approach_m"][3] == history["p_max_Pa"][3] == 0.0
-    assert "one step" in history["note"][3] and "cycle 1" in history["note"][4]
-    assert history["approach_m"][4:] == history["approach_m"][:4]
-    assert result.tables["cycles"]["p_max_Pa"] == [result.quantities["p_max_Pa"]] * 2
-    line = {name: np.asarray(values) for name, values in result.tables["line"].items()}
-    unloaded = line["state"] == "unloaded"
-    assert unloaded.sum() == (line["state"] == "peak").sum() == 33 and line["gap_m"][unloaded].min() == 0.0
-    assert {e.stage for e in result.left_out} >= {"tangential kernels", "volume grid", "unloading steps"}
-    assert seen[0][0] == "contact" and seen[-1] == ("stress", 1, 1)
+@pytest.mark.parametrize("model", [sam, fem_reference], ids=["sam", "fem"])
+def test_history_unloading_and_cycles(model):
+    """Elastic: one step back to exactly nothing, which says so, and cycles that repeat the first."""
+    loading, seen = {"steps": 3, "unload": True, "unload_steps": 5, "cycles": 3}, []
+    result = model.solve(scene(loading=loading, grid=FEW), progress=lambda *call: seen.append(call))
+    history, q = result.tables["history"], result.quantities
+    assert history["cycle"] == [1] * 4 + [2] * 4 + [3] * 4 and history["step"] == [1, 2, 3, 4] * 3
+    assert "one step" in history["note"][3] and all("cycle 1" in note for note in history["note"][4:])
+    for name in ("force_N", "approach_m", "contact_area_m2", "p_max_Pa"):
+        assert history[name][3] == 0.0 and history[name][4:8] == history[name][:4]
+    assert result.tables["cycles"]["p_max_Pa"] == [q["p_max_Pa"]] * 3
+    for table in ("axis", "line", "plane"):
+        t = {name: np.asarray(values) for name, values in result.tables[table].items()}
+        after = t["state"] == "unloaded"
+        for name in set(t) & {"p_Pa", "uz_m", "mises_Pa", "sxx_Pa", "szz_Pa"}:
+            assert not t[name][after].any() and t[name][~after].any()
+        if table == "line":
+            assert t["gap_m"][after] == pytest.approx(
+                t["x_m"][after] ** 2 / (2 * RADIUS), rel=1e-9, abs=1e-20
+            )
+    assert q["residual_uz_center_m"] == q["residual_mises_max_Pa"] == 0.0
+    assert model.solve(scene(grid=FEW)).quantities["residual_uz_center_m"] is None
+    if model is sam:
+        assert {e.stage for e in result.left_out} >= {"tangential kernels", "volume grid", "unloading steps"}
+        assert seen[0][0] == "contact" and seen[-1] == ("stress", 1, 1)
 
 
 @pytest.mark.parametrize(
