@@ -261,10 +261,6 @@ def rough(n=16, height=two_tops, *, side=PATCH, cells=None, **tables):
     return small_scene(**content | {"loading": {"force": 0.04}} | tables)
 
 
-def friction_map(values):
-    return {"law": "map", "path": FrictionMap(values, (PATCH, PATCH))}
-
-
 def test_a_map_on_a_smooth_body_is_the_constant():
     """The whole body with a map of one value against half of it: equal to the accuracy of the loop."""
     fem, grid = {"cells_per_radius": 3, "box": 4}, {"cells": [4, 4], "extent": [20e-6, 20e-6]}
@@ -320,7 +316,8 @@ def test_an_ellipsoid_over_a_rough_body_has_its_gap_and_slope_at_each_place():
 
 def test_the_map_is_read_where_the_nodes_are():
     values = np.repeat(np.linspace(0.1, 0.4, 12)[None, :], 12, axis=0)
-    made = spatial.plan(rough(12, friction=friction_map(values)))
+    local = {"law": "map", "path": FrictionMap(values, (PATCH, PATCH))}
+    made = spatial.plan(rough(12, friction=local))
     patch = tuple(
         slice((line.size - 12) // 2, (line.size + 12) // 2) for line in (made.lines.x, made.lines.y)
     )

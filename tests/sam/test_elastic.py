@@ -114,22 +114,17 @@ KINDS = {
 }
 
 
-def rows_of(result):
-    """(cycle, step) -> row of the history."""
-    history = result.tables["history"]
-    return {place: k for k, place in enumerate(zip(history["cycle"], history["step"], strict=True))}
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_approaches_of_a_force_run_return_its_forces(monkeypatch, kind):
     """In every step, to ten times the tolerance of the solver; the rest of the record with them."""
     a_scene = scene(**{"grid": COARSE} | KINDS[kind])
     by_force, plan = sam.solve(a_scene), sam.plan(a_scene)
-    rows = rows_of(by_force)
+    history = by_force.tables["history"]
+    rows = dict(zip(zip(history["cycle"], history["step"], strict=True), history["approach_m"], strict=True))
 
     def with_approach(target):
-        approach = float(by_force.tables["history"]["approach_m"][rows[target.cycle, target.step]])
-        given = replace(target, load=replace(target.load, force=np.nan, approach=approach))
+        load = replace(target.load, force=np.nan, approach=float(rows[target.cycle, target.step]))
+        given = replace(target, load=load)
         return given if target.rises else target
 
     targets = tuple(map(with_approach, plan.schedule.targets))

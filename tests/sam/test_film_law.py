@@ -17,8 +17,6 @@ from verification.reference.film_flow import Film, FlowPoint
 
 LAW = FilmLaw(80e9, 0.3, 2e9 / 3.0, 0.1, 0.4, np.inf)
 STEEL = 210e9, 0.3
-TABLES = {n: pd.read_csv(f"verification/data/table-{n}.csv") for n in (2, 3)}
-"""Of Bosman & Schipper (2011): chemical films of other studies, and how fast they grow."""
 
 
 def cells(*values):
@@ -165,7 +163,7 @@ class TestScene:
         """nm, to the digits given; between its rows the coefficient is linear."""
         growth = [1e9 * film_law.friction_of(bath).growth for bath in (50.0, 100.0, 150.0, 200.0)]
         assert growth == pytest.approx([1.3731, 2.04145, 2.5882, 2.7541], abs=5.1e-5)
-        for bath, coefficient in TABLES[3].to_numpy():
+        for bath, coefficient in pd.read_csv("verification/data/table-3.csv").to_numpy():
             exact, of_bath = coefficient * np.sqrt((314.15e-3 - 300e-6) / 1.0), film_law.friction_of(bath)
             assert 1e9 * of_bath.growth == pytest.approx(exact, rel=1e-12)
             assert 100.0 * of_bath.thinning_limit == pytest.approx(exact, rel=1e-12)

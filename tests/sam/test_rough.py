@@ -22,8 +22,6 @@ R, F = 100e-6, 0.05
 SIDE = 20e-6
 WAVE = {"kind": "sinusoid", "amplitude": 0.1e-6, "wavelength_x": 10e-6, "wavelength_y": 8e-6}
 OTHER = {"kind": "self-affine", "sq": 20e-9, "cutoff_long": 16e-6, "cutoff_short": 8e-6, "hurst": 0.8}
-OTHER |= {"seed": 5}
-DISC = {**OTHER, "renew": True}
 FACES = (0.0, 0.2e-6, 0.4e-6, 0.7e-6, 1.2e-6, 2e-6, 3.5e-6)
 
 
@@ -158,7 +156,7 @@ def test_each_stretch_is_the_surface_of_the_next_seed_and_touches_first_at_zero(
         problem = found.problem(Counters())
         return [problem.gap(load) for load in found.schedule.peaks]
 
-    renewed = pressed({**FLAT, "surface": DISC}, loading={"cycles": 3})
+    renewed = pressed({**FLAT, "surface": {**OTHER, "seed": 5, "renew": True}}, loading={"cycles": 3})
     for k, gap in enumerate(gaps(renewed)):
         alone = gaps(pressed({**FLAT, "surface": {**OTHER, "seed": 5 + k}}))[0]
         np.testing.assert_array_equal(gap, alone)

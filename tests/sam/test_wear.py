@@ -53,12 +53,6 @@ def rule(window, fills=False):
     return Wear(strain_limit=0.5, smoothing_window=window, smoothing_fills=fills)
 
 
-def paraboloid(n, radius):
-    """Depth 1 - r^2/radius^2 of a scar on n x n cells; negative outside."""
-    x = np.arange(n) - (n - 1) / 2
-    return 1 - (x[:, None] ** 2 + x**2) / radius**2
-
-
 # limits
 
 
@@ -323,7 +317,9 @@ def test_the_books_close_over_25_cycles(interpolate, fills):
     layers.
     """
     rng = np.random.default_rng(5)
-    shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
+    x = np.arange(25.0) - 12
+    scar = np.maximum(1 - (x[:, None] ** 2 + x**2) / 8.0**2, 0)
+    shape = scar * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
     original = 0.3 * UM * rng.standard_normal((25, 25))
     current, alpha = original.copy(), np.zeros((len(GRADED) - 1, 25, 25))
     worn = WearState(0.8 * UM**2, np.zeros(original.shape))

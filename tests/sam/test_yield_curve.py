@@ -8,8 +8,6 @@ from sam.scene import Plasticity
 from sam.scene.yield_curve import DepthProfile, Linear, Swift, Tabulated
 
 PAPER = Plasticity(law="swift", B=1780e6, C=4.0, n=0.095)
-TABLE = ((0.0, 1.0e9), (0.01, 1.5e9), (0.03, 1.5e9), (0.05, 1.7e9))
-
 # 1780 MPa (4 + 1e6 peeq)^0.095 with logarithms: ln 1780 = 7.484369; 0.095 ln 4 = 0.131698, exp(7.616067) =
 # 2030.6; and 0.095 times ln 14 = 2.639057, ln 104 = 4.644391, ln 2004 = 7.602900, ln 20004 = 9.903688, ln
 # 50004 = 10.819858
@@ -36,7 +34,7 @@ CURVES = [
     Swift(945e6, 20.0, 0.121),
     Linear(1e9, 10.5e9),
     Linear(1e9),
-    Tabulated(*zip(*TABLE, strict=True)),
+    Tabulated((0.0, 0.01, 0.03, 0.05), (1.0e9, 1.5e9, 1.5e9, 1.7e9)),
 ]
 
 
