@@ -11,5 +11,5 @@ import sam
 def test_there_are_examples_and_they_give_what_they_say():
     """In all modules but those that are scripts."""
     names = ["sam", *(each.name for each in pkgutil.walk_packages(sam.__path__, "sam."))]
-    found = [doctest.testmod(import_module(name)) for name in names if not name.endswith("_child")]
-    assert sum(each.failed for each in found) == 0 and sum(each.attempted for each in found) >= 9
+    examples = [doctest.testmod(import_module(name)) for name in names if not name.endswith("_child")]
+    assert sum(each.failed for each in examples) == 0 and sum(each.attempted for each in examples) >= 9
