@@ -71,12 +71,21 @@ def stress_error(answer: ManyDigits, ours: Response, height: float) -> float:
     return np.max([np.abs(mine - right).max() / max(1.0, np.abs(right).max()) for mine, right in pairs])
 
 
+@pytest.mark.parametrize(
+    "kh, ratio, nus", [(1e-8, 1e6, (0, 0.5)), (1e4, 1e-6, (0.5, 0)), (0.7, 0.4, (0.3, 0.25))]
+)
+def test_response_against_many_digits(kh, ratio, nus):
+    """The bounds of the project at corners of the range, whose middle loses some hundred roundings."""
+    worst = worst_errors([(kh, ratio, *nus)])
+    for name, bound in {"c_zz": 1e-11, "matrix": 1e-9, "film": 1e-9, "body": 1e-9, "jump": 1e-9}.items():
+        assert worst[name] < (1e-13 if kh == 0.7 else bound), f"{name}: {worst[name]}"
+
+
 def test_response_against_many_digits_over_the_whole_range():
     """Moduli over twelve decades lose digits in differences; c_zz is a sum of terms of one sign."""
     worst = worst_errors((kh, ratio, *nus) for ratio, nus, kh in product(RATIOS, POISSONS, WAVES))
     assert {name for name, each in worst.items() if not each <= 1e-9} == set()
     assert worst["c_zz"] <= 1e-11
-    assert max(worst_errors([(0.7, 0.4, 0.3, 0.25)]).values()) < 1e-13  # some hundred roundings in the middle
 
 
 @pytest.mark.parametrize(
