@@ -19,6 +19,7 @@ def test_the_law_of_the_paper_by_hand():
     np.testing.assert_allclose(
         stress, list(BY_HAND.values()), rtol=0, atol=0.05e6
     )  # half a unit of the last digit
+    assert PAPER.curve() == Swift(1780e6, 4.0, 0.095)
     slope = PAPER.curve().slope(np.array([0.0, 0.002]))  # 0.095 sigma_y 1e6/(4 + 1e6 peeq)
     np.testing.assert_allclose(slope, [0.095e6 / 4 * 2030.6e6, 0.095e6 / 2004 * 3665.2e6], rtol=2e-5)
 
