@@ -80,7 +80,7 @@ def test_a_rotation_of_the_plane_turns_the_stress_and_changes_nothing_else(name)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     F = np.array([[1.2, 0.3], [-0.1, 0.8]])
     both = [material.update(of_plane(f, 1.05), History.virgin(ONE)) for f in (F, turn @ F)]
-    before, after = (plane_of(update.stress) for update in both)
+    before, after = (update.stress[0, 0][[0, 3, 4, 2]].reshape(2, 2) for update in both)
     assert after == pytest.approx(turn @ before, abs=1e-12 * np.abs(before).max())
     assert both[1].history.plastic_strain == pytest.approx(both[0].history.plastic_strain, abs=1e-13)
     assert material.update(of_plane(turn, 1.0), History.virgin(ONE)).stress == pytest.approx(
@@ -90,10 +90,6 @@ def test_a_rotation_of_the_plane_turns_the_stress_and_changes_nothing_else(name)
 
 def of_plane(F, hoop):
     return at_point(F[0, 0] - 1.0, hoop - 1.0, F[1, 1] - 1.0, F[0, 1], F[1, 0])
-
-
-def plane_of(stress):
-    return stress[0, 0][[0, 3, 4, 2]].reshape(2, 2)
 
 
 @pytest.mark.parametrize("name", CURVES)

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import PERFECT, RADIUS, SHAPES, scene
-from scipy.integrate import quad
 
+import fem_reference
 import sam
 from sam import choose_grid
 from sam.contact.convolution import Counters
@@ -17,28 +17,17 @@ from sam.results.tables import extrapolated
 from sam.scene import Status
 from sam.schedule import Approach, Load
 from verification.cost.plan import plan
+from verification.reference.elliptic import EllipticContact
 
 FEW, COARSE = {"cells": (33, 33)}, {"cells": (33, 33), "extent": (24e-6, 24e-6)}
 
 
 @pytest.mark.parametrize("ratio", [1.00001, 1.5, 1000.0])
 def test_estimated_semi_axes_meet_hertz(ratio):
-    """The estimate that chooses the grid: curvatures of the displacement under the ellipse, by quadrature.
-
-    Under p0 sqrt(1 - x^2/a^2 - y^2/b^2) the displacement is L - M x^2 - N y^2 with (Johnson 1985, Eq. 3.64) M
-    = p0 a b/(2 E*) x integral of dw/((a^2 + w)^1.5 (b^2 + w)^0.5 w^0.5) over w > 0; contact asks M = 1/(2
-    Rx).
-    """
+    """The estimate that chooses the grid, against the closed form by elliptic integrals."""
     a_scene = scene(counterbody={"shape": "ellipsoid", "radius_x": 1e-4, "radius_y": 1e-4 * ratio})
-    a, b = hertz_semi_axes(a_scene)
-    p0, modulus = 1.5 * 0.65 / (np.pi * a * b), Bodies(a_scene).pair.contact_modulus
-    for this, other, radius in ((a, b, 1e-4), (b, a, 1e-4 * ratio)):
-
-        def integrand(t, m=this, n=other):  # w = m^2 tan^2 t
-            return np.cos(t) ** 2 / np.hypot(n * np.cos(t), m * np.sin(t))
-
-        curvature = p0 * other / (modulus * this) * quad(integrand, 0, np.pi / 2)[0]
-        assert curvature == pytest.approx(1 / (2 * radius), rel=1e-4)
+    exact = EllipticContact(0.65, 1e-4, 1e-4 * ratio, Bodies(a_scene).pair.contact_modulus)
+    assert hertz_semi_axes(a_scene) == pytest.approx(exact.semi_axes, rel=3e-5, abs=0.0)
 
 
 @pytest.mark.parametrize("shape", ["sphere", "ellipsoid", "punch", "rounded-punch"])
@@ -56,21 +45,31 @@ def test_the_gap_of_a_shape_by_hand(shape):
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-20)
 
 
-def test_history_unloading_and_cycles():
-    """Elastic: unloading in one step that says so, cycles that repeat; progress is reported, not printed."""
-    loading, seen = {"steps": 3, "unload": True, "unload_steps": 5, "cycles": 2}, []
-    result = sam.solve(scene(loading=loading, grid=FEW), progress=lambda *call: seen.append(call))
-    history = result.tables["history"]
-    assert history["cycle"] == [1] * 4 + [2] * 4 and history["step"] == [1, 2, 3, 4] * 2
-    assert history["force_N"][3] == history["approach_m"][3] == history["p_max_Pa"][3] == 0.0
-    assert "one step" in history["note"][3] and "cycle 1" in history["note"][4]
-    assert history["approach_m"][4:] == history["approach_m"][:4]
-    assert result.tables["cycles"]["p_max_Pa"] == [result.quantities["p_max_Pa"]] * 2
-    line = {name: np.asarray(values) for name, values in result.tables["line"].items()}
-    unloaded = line["state"] == "unloaded"
-    assert unloaded.sum() == (line["state"] == "peak").sum() == 33 and line["gap_m"][unloaded].min() == 0.0
-    assert {e.stage for e in result.left_out} >= {"tangential kernels", "volume grid", "unloading steps"}
-    assert seen[0][0] == "contact" and seen[-1] == ("stress", 1, 1)
+@pytest.mark.parametrize("model", [sam, fem_reference], ids=["sam", "fem"])
+def test_history_unloading_and_cycles(model):
+    """Elastic: one step back to exactly nothing, which says so, and cycles that repeat the first."""
+    loading, seen = {"steps": 3, "unload": True, "unload_steps": 5, "cycles": 3}, []
+    result = model.solve(scene(loading=loading, grid=FEW), progress=lambda *call: seen.append(call))
+    history, q = result.tables["history"], result.quantities
+    assert history["cycle"] == [1] * 4 + [2] * 4 + [3] * 4 and history["step"] == [1, 2, 3, 4] * 3
+    assert "one step" in history["note"][3] and all("cycle 1" in note for note in history["note"][4:])
+    for name in ("force_N", "approach_m", "contact_area_m2", "p_max_Pa"):
+        assert history[name][3] == 0.0 and history[name][4:8] == history[name][:4]
+    assert result.tables["cycles"]["p_max_Pa"] == [q["p_max_Pa"]] * 3
+    for table in ("axis", "line", "plane"):
+        t = {name: np.asarray(values) for name, values in result.tables[table].items()}
+        after = t["state"] == "unloaded"
+        for name in set(t) & {"p_Pa", "uz_m", "mises_Pa", "sxx_Pa", "szz_Pa"}:
+            assert not t[name][after].any() and t[name][~after].any()
+        if table == "line":
+            assert t["gap_m"][after] == pytest.approx(
+                t["x_m"][after] ** 2 / (2 * RADIUS), rel=1e-9, abs=1e-20
+            )
+    assert q["residual_uz_center_m"] == q["residual_mises_max_Pa"] == 0.0
+    assert model.solve(scene(grid=FEW)).quantities["residual_uz_center_m"] is None
+    if model is sam:
+        assert {e.stage for e in result.left_out} >= {"tangential kernels", "volume grid", "unloading steps"}
+        assert seen[0][0] == "contact" and seen[-1] == ("stress", 1, 1)
 
 
 @pytest.mark.parametrize(
@@ -115,22 +114,17 @@ KINDS = {
 }
 
 
-def rows_of(result):
-    """(cycle, step) -> row of the history."""
-    history = result.tables["history"]
-    return {place: k for k, place in enumerate(zip(history["cycle"], history["step"], strict=True))}
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_approaches_of_a_force_run_return_its_forces(monkeypatch, kind):
     """In every step, to ten times the tolerance of the solver; the rest of the record with them."""
     a_scene = scene(**{"grid": COARSE} | KINDS[kind])
     by_force, plan = sam.solve(a_scene), sam.plan(a_scene)
-    rows = rows_of(by_force)
+    history = by_force.tables["history"]
+    rows = dict(zip(zip(history["cycle"], history["step"], strict=True), history["approach_m"], strict=True))
 
     def with_approach(target):
-        approach = float(by_force.tables["history"]["approach_m"][rows[target.cycle, target.step]])
-        given = replace(target, load=replace(target.load, force=np.nan, approach=approach))
+        load = replace(target.load, force=np.nan, approach=float(rows[target.cycle, target.step]))
+        given = replace(target, load=load)
         return given if target.rises else target
 
     targets = tuple(map(with_approach, plan.schedule.targets))

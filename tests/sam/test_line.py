@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line contact: coefficients of plane strain, images, balance of forces, and a cylinder in full slip."""
+"""A line contact in both models: coefficients of plane strain, images, line forces, full slip, passes."""
 
 from itertools import pairwise
 
@@ -7,6 +7,11 @@ import numpy as np
 import pytest
 from builders import LINEAR, MODULUS, STEEL
 
+from fem_reference import plane_strain
+from fem_reference.common.bodies import Elastic
+from fem_reference.common.elasticity import mises, stiffness_tensor
+from fem_reference.common.far_field import flamant, stretched
+from fem_reference.plane_strain.recovery import stresses
 from sam import solve
 from sam.contact.convolution import Counters
 from sam.kernels.eigenstrain import surface_displacement_coefficients
@@ -91,29 +96,31 @@ def test_residual_stress_of_a_section_balances_and_strain_along_the_line_acts_as
     assert stress[1, 1] == pytest.approx(along, abs=1e-11)
 
 
-def cylinder(p0=1e9, *, cells=None, length=2e-3, radius=10e-3, **tables):
+def cylinder(p0=1e9, *, cells=None, length=2e-3, **tables):
     """(scene, half-width) of a rigid cylinder on steel under the force of an elastic p0."""
-    a = 2 * p0 * radius / MODULUS
-    shape = {"shape": "cylinder", "radius": radius, "length": length}
-    tables = {"body": STEEL, "loading": {"force": np.pi / 2 * a * p0 * length}, **tables}
+    a = 2 * p0 * 10e-3 / MODULUS
+    shape = {"shape": "cylinder", "radius": 10e-3, "length": length}
+    loading = {"force": np.pi / 2 * a * p0 * length} | tables.pop("loading", {})
+    tables = {"body": STEEL, "loading": loading, **tables}
     if cells:
         tables["grid"] = {"cells": (cells, 1)}
     return Scene(counterbody={**shape, **tables.pop("other", {})}, **tables), a
 
 
-def test_full_slip_moves_the_contact_as_the_singular_integral_equation_says():
+@pytest.mark.parametrize("model, within", [(solve, (3e-4, 2e-3)), (plane_strain.solve, (3e-3, 4e-3))])
+def test_full_slip_moves_the_contact_as_the_singular_integral_equation_says(model, within):
     """p ~ (a + x)^k (a - x)^(1 - k) about a centre, k = 1/2 + atan(beta mu)/pi: its centroid lies (8/3) (k -
-    1/2) a beside the apex, and F' = pi E* a^2 k (1 - k)/R.
+    1/2) a beside the apex, and F' = pi E* a^2 k (1 - k)/R (Johnson 1985, Sec. 8.2).
     """
     nu, mu = 0.2, 0.5
-    body, friction = {"young": 200e9, "poisson": nu}, {"coefficient": mu}
-    scene, _ = cylinder(cells=129, body=body, loading={"force": 1e3}, friction=friction)
-    found = solve(scene).quantities
+    tables = {"body": {"young": 200e9, "poisson": nu}, "friction": {"coefficient": mu}}
+    fem = {"cells_per_radius": 10, "box": 40.0}
+    found = model(cylinder(cells=129, loading={"force": 1e3}, fem=fem, **tables)[0]).quantities
     shift = np.arctan((1 - 2 * nu) / (2 * (1 - nu)) * mu) / np.pi
     modulus = 200e9 / (1 - nu**2)
     a = np.sqrt(1e3 / 2e-3 * 10e-3 / (np.pi * modulus * (0.25 - shift**2)))
-    assert found["pressure_centroid_x_m"] == pytest.approx(-8 / 3 * shift * a, rel=3e-4)
-    assert found["contact_half_width_m"] == pytest.approx(a, rel=2e-3)
+    assert found["pressure_centroid_x_m"] == pytest.approx(-8 / 3 * shift * a, rel=within[0])
+    assert found["contact_half_width_m"] == pytest.approx(a, rel=within[1])
 
 
 P0, SIDE = 2.5e9, 2 * 2.5e9 * 10e-3 / MODULUS  # of a cylinder that yields, and its half-width
@@ -121,7 +128,7 @@ P0, SIDE = 2.5e9, 2 * 2.5e9 * 10e-3 / MODULUS  # of a cylinder that yields, and 
 
 def yielding(length=2e-3, other=None, **keys):
     """The result of a cylinder on linear hardening steel at p0 = 2.5 yield stresses."""
-    loading = {"force": np.pi / 2 * SIDE * P0 * length, "steps": 2, "unload": True, **keys}
+    loading = {"steps": 2, "unload": True, **keys}
     tables = {"body": {**STEEL, "plasticity": LINEAR}, "loading": loading, "other": other or {}}
     return solve(cylinder(P0, cells=33, length=length, **tables)[0])
 
@@ -203,3 +210,111 @@ def test_a_wave_along_x_is_the_same_in_one_row_of_cells_and_in_four():
         found.append([result.quantities[name] for name in ("p_max_Pa", "approach_m", "mises_max_Pa")])
     assert found[0] == pytest.approx(found[1], rel=1e-6)
     assert found[0][0] > 1.1e9
+
+
+# finite elements in plane strain
+
+YIELD = 400e6
+
+
+def line(ratio=1.0, *, cells=4, box=10.0, plasticity=None, path=None, **loading):
+    """ratio: largest elastic pressure over YIELD; path: half of it in half-widths."""
+    a, other = 2 * ratio * YIELD * 10e-3 / MODULUS, {}
+    if path is not None:
+        loading["path"], other = (
+            {"start": [-path * a, 0], "end": [path * a, 0], "step_per_radius": 2},
+            {"slip": 0.0},
+        )
+    tables = {"body": {**STEEL, "plasticity": plasticity}, "fem": {"cells_per_radius": cells, "box": box}}
+    return cylinder(ratio * YIELD, loading=loading, other=other, **tables)[0]
+
+
+def test_line_force_stress():
+    """The one radial stress of Flamant, -2 (P cos t + Q sin t)/(pi r); no displacement at the datum."""
+    body, force, step = Elastic(3.0, 0.3), (2.0, -0.7), 1e-5
+    r, t = np.array([0.5, 1.0, 3.0, 20.0]), np.array([0.3, -1.2, 1.5, -0.4])
+    at = np.stack([r * np.sin(t), r * np.cos(t)])
+    ends = [[flamant(force, body, at + s[:, None], 5.0) for s in (way, -way)] for way in step * np.eye(2)]
+    slopes = [(after - before) / (2 * step) for after, before in ends]
+    strain = np.stack([slopes[0][0], np.zeros(4), slopes[1][1], slopes[0][1] + slopes[1][0]])
+    xx, yy, zz, xz = stiffness_tensor(3.0, 0.3) @ strain
+    radial = -2.0 * (force[0] * np.cos(t) + force[1] * np.sin(t)) / (np.pi * r)
+    expected = radial * np.array([np.sin(t) ** 2, np.cos(t) ** 2, np.sin(t) * np.cos(t)])
+    np.testing.assert_allclose([xx, zz, xz], expected, atol=1e-8)
+    np.testing.assert_allclose(yy, 0.3 * radial, atol=1e-8)
+    edge = np.array([[5.0, -5.0], [0.0, 0.0]])
+    assert np.abs(flamant((2.0, 0.0), body, edge, 5.0)[1]).max() < 1e-15
+    assert np.abs(flamant((0.0, -0.7), body, edge, 5.0)[0]).max() < 1e-15
+
+
+def test_strain_far_away():
+    """By flat plastic strain, and by its depth: derivatives of line forces along the surface."""
+    body, at = Elastic(3.0, 0.3), np.array([[2.0, -1.0, 0.3], [0.0, 0.7, 1.5]])
+
+    def moved(forces, shift):
+        return flamant(forces, body, at - np.array([[shift], [0.0]]), 1.0)
+
+    unit, step = 3.0 / (1.0 - 0.3**2), 1e-4
+    flat, deeper = stretched(body, at)
+    along = (moved((0.0, unit), step) - moved((0.0, unit), -step)) / (2 * step)
+    down = [moved((unit, 0.0), shift) for shift in (-step, 0.0, step)]
+    np.testing.assert_allclose(flat, along, rtol=1e-6)
+    np.testing.assert_allclose(deeper, -(down[0] - 2 * down[1] + down[2]) / step**2, rtol=1e-6, atol=1e-6)
+
+
+def test_two_cylinders():
+    """NAFEMS R0094-1: steel cylinder on aluminium, half-width 6.2146 mm, largest pressure 3585.4 MPa."""
+    roller = {"shape": "cylinder", "radius": 0.05, "length": 1e-3, **STEEL}
+    tables = {"loading": {"force": 35e3}, "fem": {"box": 20, "cells_per_radius": 10}}
+    result = plane_strain.solve(Scene(body=STEEL | {"young": 70e9}, counterbody=roller, **tables))
+    found = [result.quantities[name] for name in ("contact_half_width_m", "p_max_Pa", "contact_area_m2")]
+    assert found == pytest.approx([6.2146e-3, 3585.4e6, 2 * 6.2146e-6], rel=1e-3)
+    assert result.status == "converged" and max(result.certificate.values()) < 1e-9
+
+
+PERFECT = {"law": "perfect", "yield_stress": YIELD}
+KINEMATIC = PERFECT | {"kinematic": {"modulus": [20e9], "recovery": [0.0]}}
+
+
+def test_flow_does_not_lock():
+    """The mean pressure of a body that flows freely stays below that of a rigid-plastic one, (2 + pi) k, and
+    rises towards it; the volume changes elastically alone.
+    """
+    model, steps = plane_strain.load_steps(line(6.0, cells=3, plasticity=PERFECT, steps=6))
+    mean = [np.pi / 4.0 * 6.0 * step.state.force / model.scales.peak_force for step in steps]
+    mean = [force / model.size(step.state) for force, step in zip(mean, steps, strict=True)]
+    assert 2.3 < mean[-1] < (2.0 + np.pi) / np.sqrt(3.0) and mean == sorted(mean)
+    state = steps[-1].state
+    volume = model.body.strain(state.u)[:3].sum(axis=0)
+    bulk = model.stress(state)[:3].sum(axis=0) * (1.0 - 2.0 * 0.3) / (1.0 - 0.3**2)
+    np.testing.assert_allclose(volume, bulk, atol=1e-9)
+    assert np.abs(state.history.plastic_strain[:3].sum(axis=0)).max() < 1e-9
+
+
+def test_far_field_of_plastic_strain():
+    """Residual stresses do not depend on the box, and those along x have no resultant on a line x = const."""
+    found = []
+    for box in (12.0, 24.0):
+        model, steps = plane_strain.load_steps(line(3.0, box=box, plasticity=PERFECT, steps=2, unload=True))
+        state = steps[-1].state
+        assert steps[-1].unloads and not state.active.any() and state.residual < 1e-9
+        s, height = stresses(model, state), np.repeat(np.diff(model.plan.z), 2) / 2.0
+        forces = s.stress[0] @ height / (np.abs(s.stress[0]) @ height)
+        found.append((np.abs(forces[s.x < 2.0 * model.scales.length]).max(), mises(s.stress).max()))
+    (near, coarse), (far, fine) = found
+    assert far < 0.5 * near < 0.05 and coarse == pytest.approx(fine, rel=0.01)
+
+
+def test_rolling_leaves_a_track():
+    """Passes add less and less; a resumed result is equal; an elastic contact moves with the apex."""
+    rolls = line(2.1, plasticity=KINEMATIC, path=2.5, steps=2, cycles=2, unload=True)
+    kept = []
+    result = plane_strain.solve(rolls, checkpoint=kept.append)
+    assert result.status == "converged" and result.quantities["groove_deepest_m"] > 0.0
+    first, second = result.tables["passes"]["new_strain_max"]
+    assert 0.0 <= second < 0.5 * first
+    again = plane_strain.solve(rolls, start=kept[-4])
+    assert again.quantities == result.quantities
+    model, steps = plane_strain.load_steps(line(1.0, path=1.0))
+    for step in steps:
+        assert model.centroid(step.state) == pytest.approx(step.state.load.x, abs=0.05)

@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""A misfit sphere in SAM: stress and profiles, the plastic zone, means over cells, and the chosen grid."""
+"""A misfit sphere in both models: stress and profiles, the plastic zone, means over cells, the grid."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from builders import PERFECT, scene
-from scipy.integrate import quad
+from builders import LINEAR, PERFECT, scene
 
+import fem_reference
 import sam
+from fem_reference.axisymmetric.misfit import PROFILES as FEM_PROFILES, MisfitSphere as FemSphere
+from fem_reference.common.bodies import Elastic
 from sam.elastic.problem import PROFILES, MisfitSphere
 from sam.grid.cells import CellGrid, Room
 from sam.grid.demands import MisfitDemand
 from sam.half_space import ElasticConstants
 from sam.scene import Grid, Scene, resolved
 from verification.reference.mindlin_cheng import EigenstrainSphere
-from verification.reference.misfit_sphere import GrowingSphere
+from verification.reference.misfit_sphere import PROFILES as EXACT, GrowingSphere
 
 YOUNG, NU, A, DEPTH = 210e9, 0.3, 1e-5, 1.7e-5
 
@@ -26,7 +28,7 @@ def sphere(profile: str, free=True) -> MisfitSphere:
 
 def growing(plasticity=None, depth=DEPTH, **keys) -> Scene:
     loading = {"prescribed": "misfit-sphere", "depth": depth, "radius": A, "misfit": 0.02, **keys}
-    return scene(body={"plasticity": plasticity}, loading=loading)
+    return scene(body={"plasticity": plasticity}, loading=loading, fem={"cells_per_radius": 4})
 
 
 def test_stress_below_a_free_surface_is_that_of_mindlin_and_cheng():
@@ -50,16 +52,14 @@ def test_stress_of_an_infinite_body_is_that_of_the_closed_form(profile):
 
 
 @pytest.mark.parametrize("name", list(PROFILES))
-def test_means_and_strength_are_integrals_of_the_local_strain(name):
-    profile = PROFILES[name]
-
-    def within(x: float) -> float:
-        points = [1.0] if x > 1.0 else None
-        return quad(lambda s: 3 * s**2 * float(profile.local(np.array(s))), 0, x, points=points)[0]
-
-    assert profile.strength == pytest.approx(within(8.0), rel=1e-9)
-    for x in (0.3, 0.9995, 1.0005, 2.0):
-        assert float(profile.mean(np.array(x))) == pytest.approx(within(x) / x**3, rel=1e-9)
+def test_strain_and_mean_are_those_of_the_reference(name):
+    """In both models; far away the mean is the strength over the volume."""
+    s, ours = np.array([1e-3, 0.05, 0.0999, 0.1001, 0.4, 0.9995, 1.0005, 1.3, 4.0]), PROFILES[name]
+    exact, excess = EXACT[name](s)
+    for local, mean in ((ours.local(s), ours.mean(s)), FEM_PROFILES[name](s)):
+        assert local == pytest.approx(exact, abs=1e-14)
+        assert mean - local == pytest.approx(excess, abs=1e-11)
+    assert ours.strength == pytest.approx(8.0**3 * EXACT[name](np.array(8.0))[1], rel=1e-12)
 
 
 def test_mean_of_gauss_near_the_centre():
@@ -125,7 +125,7 @@ def test_layers_reach_as_far_as_the_cells(reach, count):
 
 @pytest.mark.parametrize("depth", [1.6, 4.0])
 def test_the_chosen_grid_holds_the_plastic_zone_with_a_cell_at_the_centre(depth):
-    given = growing({"law": "linear", "yield_stress": 1e9, "modulus": 10e9}, depth * A)
+    given = growing(LINEAR, depth * A)
     assert (given.loading.profile, given.loading.surface) == ("smooth", "free")
     assert Scene(**resolved(given)) == given
     grid, zone = sam.choose_grid(given), sam.misfit_zone(given)
@@ -140,3 +140,58 @@ def test_a_zone_that_reaches_a_held_surface_is_refused():
     soft = growing(PERFECT | {"yield_stress": 0.2e9}, surface="held")
     with pytest.raises(sam.UnsupportedScene, match=r"loading\.depth = 1\.7.*held"):
         sam.solve(soft)
+
+
+# finite elements
+
+
+def test_far_field_is_that_of_mindlin_and_cheng():
+    """At the surface, and without traction there: by differences of the displacements."""
+    young, nu, depth = 0.91, 0.3, 1.5
+    free = FemSphere(Elastic(young, nu), depth, "ball", free=True)
+    r, zero = np.array([0.5, 2.0, 7.0]), np.zeros(3)
+    exact = EigenstrainSphere(1.0, 1.0, depth, young, nu)
+    assert free.displacement(r, zero)[1] == pytest.approx(exact.surface_displacement(r, 0.0), rel=1e-12)
+    h, lame = 1e-5, young * nu / ((1 + nu) * (1 - 2 * nu))
+    shear = young / (2 * (1 + nu))
+    of_z = (free.displacement(r, zero + h) - free.displacement(r, zero - h)) / (2 * h)
+    of_r = (free.displacement(r + h, zero) - free.displacement(r - h, zero)) / (2 * h)
+    trace = of_r[0] + free.displacement(r, zero)[0] / r + of_z[1]
+    assert np.abs(lame * trace + 2 * shear * of_z[1]).max() < 1e-8
+    assert np.abs(of_z[0] + of_r[1]).max() < 1e-8
+
+
+@pytest.mark.parametrize("profile", list(PROFILES))
+def test_nodal_forces_of_a_held_surface_do_the_work_of_its_tractions(profile):
+    """Over displacements 1, r and r^2, which quadratic edges have: integrals of the closed form's stress."""
+    depth, r = 1.5, np.array([0.0, 0.2, 0.4, 0.55, 0.7, 0.85, 1.0, 1.2, 1.4])
+    held = FemSphere(Elastic(0.91, 0.3), depth, profile, free=False)
+    exact = GrowingSphere(0.91, 0.3, lambda peeq: 1e30 + 0 * peeq, 1.0, 1.0, profile)
+    t, w = np.polynomial.legendre.leggauss(60)
+    at = 0.7 * (t + 1.0)
+    stress = exact.stress(at, 0.0, -depth)
+    forces = held.surface_forces(r)
+    for power in range(3):
+        for force, traction in zip(forces, (-stress[:, 4], -stress[:, 2]), strict=True):
+            work = 0.7 * (w * 2 * np.pi * at ** (power + 1) * traction).sum()
+            assert force @ r**power == pytest.approx(work, rel=1e-6)
+
+
+def test_zone_of_fem_ends_where_the_stress_of_a_point_is_the_yield_stress():
+    """To the points at which it is looked for."""
+    held = FemSphere(Elastic(0.91, 0.3), 1.5, "ball", free=False)
+    for limit in (0.05, 0.2):
+        assert held.zone(limit) == pytest.approx((1.3 / limit) ** (1 / 3), rel=3e-4)
+    assert held.stiffness == pytest.approx(1.3, rel=1e-14) and held.zone(2.0) == 0.0
+
+
+def test_nothing_touches_and_an_elastic_body_forgets_the_strain():
+    """Below a free surface, all that it left is rounding; one that yields is within its yield stress."""
+    elastic = fem_reference.solve(growing(None, 1.5 * A, unload=True))
+    plane = elastic.tables["plane"]
+    left = plane["mises_Pa"][plane["state"] == "unloaded"]
+    assert elastic.converged and np.abs(left).max() < 1e-9 * plane["mises_Pa"].max()
+    plastic = fem_reference.solve(growing(LINEAR, 1.5 * A, surface="held", steps=2, unload=True))
+    assert plastic.certificate["yield_excess"] < 1e-9 and plastic.quantities["peeq_max"] > 0.0
+    for q in (elastic.quantities, plastic.quantities):
+        assert q["approach_m"] is None and q["force_N"] == q["contact_area_m2"] == q["p_max_Pa"] == 0.0

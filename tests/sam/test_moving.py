@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from builders import CHEMICAL_FILM, PATH, SWIFT_YIELD, hertz_force, parsed, running_in, scene
+from builders import CHEMICAL_FILM, PATH, SWIFT, SWIFT_YIELD, hertz_force, parsed, running_in, scene
 
 import sam
 from sam.grid.cells import CellGrid, Window
@@ -137,8 +137,6 @@ class TestTrack:
 
 RADIUS, P0 = 1e-2, 4 * SWIFT_YIELD
 A = np.pi * P0 * RADIUS / (2 * 210e9 / 0.91)  # of Hertz, Johnson 1985, Eq. 4.24
-FORCE = hertz_force(P0, RADIUS)
-SWIFT = {"law": "swift", "B": 945e6, "C": 20.0, "n": 0.121}
 
 
 def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> Scene:
@@ -146,7 +144,7 @@ def moving(path: dict, *, track=2.0, plasticity=SWIFT, grid=None, **tables) -> S
     h, nx = A / 4, 2 * round((track / 2 + 2.2) * 4) + 1
     depths = {"depths": tuple(h * np.append(np.arange(7), [7.2, 8.8, 12]))} if plasticity else {}
     ends = {"start": (-track / 2 * A, 0.0), "end": (track / 2 * A, 0.0)}
-    loading = {"force": FORCE, "steps": 1, "unload": True, "path": ends | path}
+    loading = {"force": hertz_force(P0, RADIUS), "steps": 1, "unload": True, "path": ends | path}
     return scene(
         body={"plasticity": plasticity},
         loading=loading | tables.pop("loading", {}),
@@ -249,18 +247,6 @@ def of_wave(cells: float) -> dict:
     return {"kind": "sinusoid", "amplitude": 20e-9, "wavelength_x": cells * CELL}
 
 
-def sliding(surface, *, body=None, **loading) -> Scene:
-    """A plane with a surface that slides over an elastic patch of 24 x 24 cells."""
-    path = {"start": (-6 * CELL, 0.0), "end": (6 * CELL, 0.0), "steps": 6} | loading.pop("path", {})
-    return scene(
-        counterbody={"shape": "flat", "surface": surface},
-        surface=body,
-        loading={"force": 0.01, "steps": 1, "path": path} | loading,
-        grid={"cells": (CELLS, CELLS), "extent": (SIDE, SIDE), "border": "relief"},
-        solver={"tolerance": 1e-4},
-    )
-
-
 def test_a_body_that_yields_only_further_along_the_path():
     loading = {"force": 0.01, "path": {"start": (-3 * CELL, 0.0), "end": (3 * CELL, 0.0), "steps": 6}}
     keys = {"counterbody": {"shape": "sphere", "radius": 400e-6}, "loading": loading, "cycles": 1, "steps": 1}
@@ -272,7 +258,10 @@ def test_a_body_that_yields_only_further_along_the_path():
 
 def test_a_map_alone_asks_for_a_grid():
     values = np.random.Generator(np.random.PCG64(1)).normal(scale=1e-8, size=(36, 24))
-    found = sliding({"kind": "file", "path": HeightMap(values, (36 * CELL, 24 * CELL))})
+    surface = {"kind": "file", "path": HeightMap(values, (36 * CELL, 24 * CELL))}
+    path = {"start": (-6 * CELL, 0.0), "end": (6 * CELL, 0.0), "steps": 6}
+    grid = {"cells": (CELLS, CELLS), "extent": (SIDE, SIDE)}
+    found = scene(counterbody={"shape": "flat", "surface": surface}, loading={"path": path}, grid=grid)
     assert found.counter_strip.whole == (36, 24) and found.patch[0] == (CELLS, CELLS)
     with pytest.raises(SceneError, match="longer than the patch"):
         Scene(**{**dict(found), "grid": None})

@@ -461,7 +461,6 @@ def described(**keys) -> dict:
 
 # tables of a scene: key that is named, pieces of its value and of what is said of it
 IN_PYTHON = [
-    (plastic(SWIFT, layer=SOFT), f"{IN}_thickness", "", "the thickness of the layer"),
     (plastic(THICK, layer_thickness=float("nan"), layer=SOFT), f"{IN}_thickness", "NaN", "a length from"),
     (plastic(THICK, layer=[SOFT]), IN, "perfect", "a table"),
     (plastic(THICK, layer=SWIFT | {"B": "945 um"}), f"{IN}.B", "945 um", MODULUS),
@@ -475,7 +474,6 @@ IN_PYTHON = [
     (back(recovery=(True, 0.0)), f"{BACK}.recovery[0]", "true", RECOVERY),
     (back() | {"solver": {"verdict": 1}}, "solver.verdict", "1", "true or false"),
     (back() | {"solver": {"method": "paper"}}, "solver.method", "paper", "knows no back-stress"),
-    ({"body": {"poisson": 0.5, "plasticity": SWIFT}}, "body.poisson", "0.5", "less than 0.5 with plasticity"),
     (plastic(MPA), f"{AT}file", "", "at a plastic strain of 0.002: it is 374 Pa: are values in MPa"),
     (plastic(SWIFT, B=945.0), f"{AT}B", "", "at least 2.1e+06 Pa"),
     (plastic(SOFT, yield_stress=2.099e6), f"{AT}yield_stress", "", "at least 2.1e+06 Pa"),

@@ -69,8 +69,9 @@ def judging(worst=R, noise=NOISE):
     return Judging(1, FLOOR, noise, worst)
 
 
-def class_of(found, total=1.0, **how):
-    return ORDER[classes(found, np.full(1, total), STRAIN, judging(**how))[0][0]]
+def class_of(found, **how):
+    total = sum(each.accumulated for each in found)
+    return ORDER[classes(found, total, STRAIN, judging(**how))[0][0]]
 
 
 def verdict(found, volume, **how) -> Verdict:
@@ -79,29 +80,21 @@ def verdict(found, volume, **how) -> Verdict:
 
 
 @pytest.mark.parametrize(
-    ("dp", "share", "wanted"),
-    [
-        ((0, 0, 0), 0.0, E),
-        ((1e-3, 1e-4, 9e-7, 9e-7), 0.0, K),
-        ((1e-3, 0, 0), 0.0, K),
-        ((1e-3, 8e-4, 6.4e-4, 5.2e-4), 1.0, S),
-        (AGAIN, 0.01, A),
-        (AGAIN, (1, 0.5, 0.4, 0.3), A),
-        (AGAIN, 0.3, R),
-        (AGAIN, (1, 0.3, 0.35, 0.4), U),
-        (AGAIN, (1, 0.5, 0.46, 0.4232), A),  # falls to nothing
-        (AGAIN, (1, 0.5, 0.4, 0.35), U),  # falls to 0.3
-        (AGAIN, (1, 0.5, 0.48, 0.467), U),  # falls to 0.44
-        ((5e-3, 1e-3, 1e-3), 0.3, U),
-    ],
-)
-def test_classes_of_given_strains(dp, share, wanted):
-    assert class_of(periods(dp, share), total=sum(dp)) is wanted
-
-
-@pytest.mark.parametrize(
     ("found", "wanted"),
     [
+        (periods((0, 0, 0)), E),
+        (periods((1e-3, 1e-4, 9e-7, 9e-7)), K),
+        (periods((1e-3, 0, 0)), K),
+        (periods((1e-3, 8e-4, 6.4e-4, 5.2e-4), 1.0), S),
+        (periods(AGAIN, 0.01), A),
+        (periods(AGAIN, (1, 0.5, 0.4, 0.3)), A),
+        (periods(AGAIN, 0.3), R),
+        (periods(AGAIN, (1, 0.3, 0.35, 0.4)), U),
+        (periods(AGAIN, (1, 0.5, 0.46, 0.4232)), A),  # falls to nothing
+        (periods(AGAIN, (1, 0.5, 0.4, 0.35)), U),  # falls to 0.3
+        (periods(AGAIN, (1, 0.5, 0.48, 0.467)), U),  # falls to 0.44
+        (periods((5e-3, 1e-3, 1e-3), 0.3), U),
+        # either side of a limit
         (steady(ratio=1.02 - NEAR), A),
         (steady(ratio=1.02 + NEAR), U),
         (steady(ratio=0.98 + NEAR), A),
@@ -118,7 +111,7 @@ def test_classes_of_given_strains(dp, share, wanted):
         (steady((1.0, 0.5, 0.5 * (1.05 + NEAR), 0.5 * (1.05 + NEAR) ** 2)), U),
     ],
 )
-def test_either_side_of_a_limit(found, wanted):
+def test_classes_of_given_strains(found, wanted):
     assert class_of(found) is wanted
 
 

@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings, strategies as st
 from rounding import EPS, close, of_least_squares
 
 from sam.grid.cells import Window
+from sam.plasticity.flow import equivalent_strain as norm
 from sam.scene import Wear
 from sam.wear import (
     StrainLimits,
@@ -50,12 +51,6 @@ def fallen(alpha, faces, limits, interpolate=True):
 def rule(window, fills=False):
     """Wear of a scene that smooths so; the limits of a law are given beside it."""
     return Wear(strain_limit=0.5, smoothing_window=window, smoothing_fills=fills)
-
-
-def paraboloid(n, radius):
-    """Depth 1 - r^2/radius^2 of a scar on n x n cells; negative outside."""
-    x = np.arange(n) - (n - 1) / 2
-    return 1 - (x[:, None] ** 2 + x**2) / radius**2
 
 
 # limits
@@ -222,10 +217,6 @@ def state(seed, faces, nx=5, ny=4, raised=()):
     return strain, alpha, depth
 
 
-def norm(strain):
-    return np.sqrt(2 / 3 * ((strain[:3] ** 2).sum(axis=0) + 2 * (strain[3:] ** 2).sum(axis=0)))
-
-
 def assert_closed(before, after, removed, faces):
     """To the rounding of overlaps: two a layer, differences of depths with two roundings each."""
     integral = (np.abs(before) * np.diff(faces)[:, None, None]).sum(axis=-3).max()
@@ -326,7 +317,9 @@ def test_the_books_close_over_25_cycles(interpolate, fills):
     layers.
     """
     rng = np.random.default_rng(5)
-    shape = np.maximum(paraboloid(25, 8.0), 0) * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
+    x = np.arange(25.0) - 12
+    scar = np.maximum(1 - (x[:, None] ** 2 + x**2) / 8.0**2, 0)
+    shape = scar * np.exp(-((GRADED[:-1] / UM) ** 2))[:, None, None]
     original = 0.3 * UM * rng.standard_normal((25, 25))
     current, alpha = original.copy(), np.zeros((len(GRADED) - 1, 25, 25))
     worn = WearState(0.8 * UM**2, np.zeros(original.shape))
