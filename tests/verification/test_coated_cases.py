@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Coated and rough contacts: what is read of results that no solver made, scenes of recipes, and figures."""
+"""Coated and rough contacts: what is read of results that no solver made; the film that yields."""
 
 import math
 from dataclasses import replace
@@ -8,15 +8,22 @@ import numpy as np
 import pytest
 from made_results import Made, of_plane
 
+from fem_reference.axisymmetric.model import build
+from fem_reference.axisymmetric.planner import plan
+from fem_reference.common.schedule import Load
 from sam.scene import Result, load_scene
 from verification.cases.case import with_keys
+from verification.cases.coated.film_yield import FilmContact, scene_of
 from verification.compare.measures import Plane, depths_compared
 from verification.figures.maps import in_body
 from verification.judging import error_of
 from verification.quantities import QUANTITIES
+from verification.reference.bonded_film import elastic_mises, in_plane_strain, thinning
+from verification.reference.hertz import axis_stress
 
-SLIDING, ASPERITIES = (
-    load_scene(f"verification/scenes/{name}.toml") for name in ("coated-sliding", "rough-asperities")
+SLIDING, ASPERITIES, FILM_YIELD = (
+    load_scene(f"verification/scenes/{name}.toml")
+    for name in ("coated-sliding", "rough-asperities", "film-yield")
 )
 
 
@@ -108,3 +115,43 @@ def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points
     assert not between.any() and ((compared > under) & (compared < under + 0.1)).any() and compared[-1] > 1.5
     even = Plane(x, z, (1.0 + z) * np.ones((5, 1)))
     np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
+
+
+# --- the film that yields ---------------------------------------------------------------------------------
+
+
+class TestBondedFilm:
+    p, E, nu, Y = 5e9, 80e9, 0.3, 0.67e9
+
+    def test_strain_of_the_body_is_that_of_hertz(self):
+        stress = axis_stress(0.0, self.p, 1.0, 0.28)[:3]
+        expected = (stress[0] - 0.28 * (stress[1] + stress[2])) / 210e9
+        assert in_plane_strain(self.p, 210e9, 0.28) == pytest.approx(expected, rel=1e-12)
+
+    def mises(self, e, plastic=0.0):
+        """By Hooke's law, of strains e, e in the surface, szz = -p and plastic strains (1/2, 1/2, -1)."""
+        lame = self.E * self.nu / (1 + self.nu) / (1 - 2 * self.nu)
+        C, flow = lame + self.E / (1 + self.nu) * np.eye(3), np.array([0.5, 0.5, -1.0]) * plastic
+        across = (-self.p - C[2, :2].sum() * e + C[2] @ flow) / C[2, 2]
+        sxx, _, szz = C @ (np.array([e, e, across]) - flow)
+        return sxx - szz
+
+    def test_elastic_and_plastic_states_obey_hookes_law(self):
+        e, film = in_plane_strain(self.p, 210e9, 0.3), (self.E, self.nu, self.Y)
+        assert elastic_mises(self.p, e, self.E, self.nu) == pytest.approx(self.mises(e), rel=1e-12)
+        flow = thinning(self.p, 0.0, e, film)
+        assert self.mises(e, flow) == pytest.approx(self.Y, rel=1e-12) and flow > 0.02
+        assert thinning(0.1 * self.p, 0.0, 0.1 * e, film) == 0.0
+
+
+@pytest.mark.parametrize("film", [True, False])
+def test_a_flowing_film_keeps_the_contact_of_the_step_before(film):
+    """A node too many squeezes the film to where no step converges, however small."""
+    whole = plan(scene_of(FILM_YIELD, FilmContact(2e-6, 6.5e9, "rigid", "B 945", "yields"), 6))
+    model = build(whole if film else whole.bare)
+    virgin, contact = model.virgin(), model.radii <= 1.0
+    gap, flowed = np.where(contact, 0.0, model.radii - 1.0), virgin.history.peeq + 1e-3
+    history = replace(virgin.history, peeq=flowed)
+    before = replace(virgin, load=Load(1.0), active=contact, gap=gap, history=history)
+    grown = model.starting_set(1.3, before)
+    assert np.array_equal(grown, contact) == film and grown.sum() >= contact.sum()

@@ -252,6 +252,23 @@ def test_finite_elements_in_space_count_on_both_sides_and_no_stress_at_the_edge_
     assert name not in red(SAM, wrong, scene(counterbody=SHAPES["punch"]))
 
 
+def test_sliding_the_other_way_is_noticed():
+    """Every field that has two sides differs when they are exchanged."""
+    columns = ("line", "p_Pa"), ("line", "uz_m"), ("plane", "mises_Pa")
+
+    def towards(side: float) -> Made:
+        out = replace(SAM, quantities=QUANTITIES | {"pressure_centroid_x_m": 0.02 * side})
+        for table, column in columns:
+            skew = 1 + 0.2 * side * SAM.tables[table]["x_m"]
+            out = with_column(out, table, column, lambda values, skew=skew: skew * values)
+        return out
+
+    sliding = scene(friction=0.2)
+    assert red(towards(1), towards(1), sliding) == set()
+    fields = {"p_Pa over the contact", "uz_m on the line", "mises_Pa in the plane y = 0"}
+    assert red(towards(-1), towards(1), sliding) == fields | {"pressure_centroid_x_m"}
+
+
 def test_six_stresses_of_own_data_have_a_von_mises_stress(tmp_path):
     rows = [f"{z}e-6,0,0,{-1 - z}e9,0,0,0\n" for z in range(6)]
     (tmp_path / "own.csv").write_text("z_m,sxx_Pa,syy_Pa,szz_Pa,syz_Pa,sxz_Pa,sxy_Pa\n" + "".join(rows))
