@@ -11,7 +11,7 @@ from made_results import of_frame, red
 
 from sam.scene import parse_scene
 from verification.cases.cost import published_code
-from verification.cost import estimates, growth
+from verification.cost import estimates
 from verification.cost.measured import alone, idle_bytes
 from verification.reference.convergence import fit_power
 from verification.runs.models import FEM, SAM, check
@@ -44,15 +44,9 @@ def test_a_power_needs_three_points_in_its_range():
             fit_power(x, y, first)
 
 
-@pytest.fixture(scope="module")
-def idle() -> int:
-    """Memory of a process that has solved nothing."""
-    return idle_bytes(SAM)
-
-
-def test_a_process_measures_its_own_memory_and_one_thread(idle):
+def test_a_process_measures_its_own_memory_and_one_thread():
     """Also after this process had much more memory than it has."""
-    before = {name: os.environ.get(name) for name in THREADS}
+    idle, before = idle_bytes(SAM), {name: os.environ.get(name) for name in THREADS}
     large = np.ones(40_000_000)
     assert large.nbytes > 2 * idle
     del large
@@ -74,14 +68,6 @@ def test_back_stresses_count_by_what_they_add_at_one_per_cent():
     for law, expected in ((PERFECT, 0.0), (PERFECT | {"kinematic": kinematic}, added)):
         found = estimates._back_hardening(scene(body={"plasticity": law}), np.array([1e-6, 2e-6]))
         assert found == pytest.approx(expected, rel=1e-13)
-
-
-def test_every_count_has_a_factor():
-    for make in growth.FAMILIES.values():
-        for rung in make()[:1]:
-            found = estimates.counted(rung.scene, rung.model)
-            assert found.bytes.keys() <= estimates.MEMORY[rung.model].keys()
-            assert found.work.keys() <= estimates.TIME[rung.model].keys()
 
 
 # against the published code
