@@ -18,6 +18,7 @@ from verification.rows import case_files
 
 RADIUS, MODULUS, YIELD = 105e-6, 210e9 / 0.91, 1e9
 KE, JG = KogutEtsion(0.3), JacksonGreen(0.3, 0.0088)
+STEEL = Ghaednia(100e9 / 0.91, 200e9, 0.3, 750e6, 0.02)
 
 
 @pytest.mark.parametrize("fit", [KE, JG])
@@ -78,13 +79,10 @@ def test_what_stays_after_unloading():
             residual_share(bad)
 
 
-class TestHardening:
-    STEEL = Ghaednia(100e9 / 0.91, 200e9, 0.3, 750e6, 0.02)
-
-    def test_numbers_of_the_public_program(self):
-        """Steel on steel, 750 MPa, 2 %: at d/R = 0.005 a/R = 0.0811 and 39.3 N on a sphere of 1 mm."""
-        assert self.STEEL.area_radius(0.005) == pytest.approx(0.0811, abs=5e-5)
-        assert self.STEEL.load(0.005) * self.STEEL.modulus * 1e-6 == pytest.approx(39.3, abs=0.05)
+def test_numbers_of_the_public_program():
+    """Steel on steel, 750 MPa, 2 %: at d/R = 0.005 a/R = 0.0811 and 39.3 N on a sphere of 1 mm."""
+    assert STEEL.area_radius(0.005) == pytest.approx(0.0811, abs=5e-5)
+    assert STEEL.load(0.005) * STEEL.modulus * 1e-6 == pytest.approx(39.3, abs=0.05)
 
 
 def test_first_yield_is_that_of_the_closed_form():
@@ -101,7 +99,7 @@ def test_the_fit_under_a_force_is_the_fit_at_its_approach():
     steel = with_keys(base, "counterbody", young=200e9, poisson=0.3)
     answer = published.ghaednia(published.ghaednia_depth(published.tangent(steel, 0.02), 0.007))
     assert answer.values["approach"] == pytest.approx(0.007e-3, rel=1e-12, abs=0)
-    fit = TestHardening.STEEL.area_radius(0.007) * 1e-3
+    fit = STEEL.area_radius(0.007) * 1e-3
     assert answer.values["radius"] == pytest.approx(float(fit), rel=1e-12, abs=0)
 
 

@@ -1,25 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""Coated and rough contacts: what is read of results that no solver made; the film that yields."""
+"""Coated, rough and sliding contacts: what is measured of results in closed form; the film that yields."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import GIVEN, friction_text, given_pressure, parsed
 from made_results import Made, of_plane
 
 from fem_reference.axisymmetric.model import build
 from fem_reference.axisymmetric.planner import plan
 from fem_reference.common.schedule import Load
-from sam.scene import Result, load_scene
+from sam.scene import FieldMesh, Result, load_scene, parse_scene
 from verification.cases.case import with_keys
 from verification.cases.coated.film_yield import FilmContact, scene_of
+from verification.cases.sliding.sliding_sphere import limit_of_root, overtaking
+from verification.compare import measures
 from verification.compare.measures import Plane, depths_compared
 from verification.figures.maps import in_body
 from verification.judging import error_of
 from verification.quantities import QUANTITIES
 from verification.reference.bonded_film import elastic_mises, in_plane_strain, thinning
+from verification.reference.hamilton import sliding_stress
 from verification.reference.hertz import axis_stress
+from verification.reference.shakedown import upper_bound
+from verification.reference.stress import von_mises
+from verification.references import hamilton
+from verification.runs import models
 
 SLIDING, ASPERITIES, FILM_YIELD = (
     load_scene(f"verification/scenes/{name}.toml")
@@ -155,3 +163,93 @@ def test_a_flowing_film_keeps_the_contact_of_the_step_before(film):
     before = replace(virgin, load=Load(1.0), active=contact, gap=gap, history=history)
     grown = model.starting_set(1.3, before)
     assert np.array_equal(grown, contact) == film and grown.sum() >= contact.sum()
+
+
+# --- sliding contacts -------------------------------------------------------------------------------------
+
+
+def strain(x, z):
+    """A smooth zone that leans to +x, 1 % at its largest, zero outside an ellipse."""
+    return 0.01 * np.maximum(0.0, 1.0 - ((x - 0.2 * z) / 1.1) ** 2 - ((z - 0.35) / 0.75) ** 2) ** 2
+
+
+def plane(x, z, factor=1.0) -> Made:
+    """The zone at the points of a grid in y = 0, times a factor."""
+    return Made({}, {"plane": of_plane(x, z, "peeq", lambda a, b: factor * strain(a, b))})
+
+
+def like_sam(factor=1.0) -> Made:
+    """On cells of 1/16."""
+    return plane(np.arange(-35, 36) / 16, np.arange(24) / 16 + 1 / 32, factor)
+
+
+def test_hats_take_means_exactly():
+    """Of constants and, inside, of linear functions at the centres of cells."""
+    nodes, h = np.array([-1.0, -0.5, 0.0, 0.25, 1.0]), 0.25 / 10
+    faces = np.linspace(-1.0, 1.0, 81)
+    matrix, centres = measures.hat_means(nodes, faces), (faces[1:] + faces[:-1]) / 2
+    assert matrix.sum(axis=1) == pytest.approx(np.ones(5), abs=1e-14)
+    exact = nodes[1:-1] + (np.diff(nodes)[1:] - np.diff(nodes)[:-1]) / 3.0  # centre of an uneven triangle
+    assert (matrix @ centres)[1:-1] == pytest.approx(exact, abs=h**2)
+
+
+def test_profile_difference_is_that_of_the_strains():
+    fem = Plane.of(plane((np.arange(-14, 14) + 0.5) / 10, (np.arange(15) + 0.5) / 10).tables)
+    assert depths_compared(fem, 0.0)[0] == 0.3 and depths_compared(fem, 0.0)[-1] < 1.0
+    assert measures.profile_difference(Plane.of(like_sam().tables), fem, 0.0) < 0.01
+    larger = Plane.of(like_sam(factor=1.04).tables)
+    assert measures.profile_difference(larger, fem, 0.0) == pytest.approx(0.04, abs=0.01)
+
+
+def test_limits_are_recovered_of_errors_of_second_order_in_cells_and_first_order_in_steps():
+    results = {
+        f"limit-sam-{count}-{steps}": like_sam((1.0 + 3.0 / count**2) * (1.0 + 0.2 / steps))
+        for count, steps in ((12, 1), (16, 1), (12, 5), (12, 10))
+    }
+    z = np.array([0.3, 0.5])
+    exact = Plane.of(like_sam().tables).below(0.1, z)
+    assert measures.limit_of_strain(results, "sam", a=1.0, x=0.1, z=z) == pytest.approx(exact, rel=1e-12)
+
+
+def test_exact_stresses_of_sam_have_no_error_and_sliding_the_other_way_a_large_one():
+    scene = parse_scene(given_pressure(GIVEN + "[friction]\ncoefficient = 0.4\n").encode(), "")
+    a, reference = scene.loading.radius, hamilton(scene)
+
+    def exact(x, z):
+        return sliding_stress(x, 0.0, z, scene.loading.p0, contact_radius=a, nu=0.3, friction=0.4)
+
+    def errors(result) -> np.ndarray:
+        return np.array([QUANTITIES[name].of(result, reference) for name in measures.COMPONENTS])
+
+    z = np.linspace(0.0, 2.0, 41) * a
+    names, state = (f"{name}_Pa" for name in measures.COMPONENTS), ["peak"] * z.size
+    axis = {"state": state, "z_m": z} | dict(zip(names, exact(0.0, z).T, strict=True))
+    plane = {"state": state, "x_m": 0.3 * z, "z_m": z, "mises_Pa": von_mises(exact(0.3 * z, z))}
+    found = Made({}, {"axis": axis, "plane": plane}, FieldMesh(np.zeros((0, 3)), {}))
+    assert errors(found).max() < 1e-12 and QUANTITIES["plane"].of(found, reference) < 1e-12
+    axis["sxz_Pa"] = -axis["sxz_Pa"]
+    assert errors(found)[4] > 0.1
+
+
+def test_parabola_in_the_root_of_the_size_is_recovered():
+    h = 1.0 / np.array([18.0, 36.0, 72.0, 144.0])
+    assert limit_of_root(h, 0.3 + 0.4 * np.sqrt(h) - 0.1 * h) == pytest.approx(0.3, abs=1e-12)
+    assert overtaking() == pytest.approx(0.305, abs=5e-4)  # Hamilton's closed form
+
+
+def test_upper_bound_is_that_of_the_literature():
+    """4.68 without friction (Ponter, Hearle and Johnson 1985); 1/mu where the surface decides."""
+    assert upper_bound(0.0) == pytest.approx(4.675, abs=2e-3)
+    assert upper_bound(0.2) == pytest.approx(4.6715, abs=1e-3)
+    assert upper_bound(0.25) == 4.0 and upper_bound(0.5) == 2.0
+
+
+def test_cheapest_reference_of_a_scene():
+    assert models.cheapest_reference(parsed()) == models.FEM
+    assert (
+        models.cheapest_reference(parse_scene(friction_text("coefficient = 0.1").encode(), ""))
+        == models.FEM_3D
+    )
+    assert models.cheapest_reference(parse_scene(friction_text("coefficient = 0").encode(), "")) == models.FEM
+    with pytest.raises(models.ModelError, match=r"fem-axisymmetric: body.poisson"):
+        models.cheapest_reference(parsed(("0.3", "0.5")))
