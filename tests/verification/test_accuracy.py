@@ -1,19 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""Accuracy on demand: what is chosen, how it is refined, what is refused and what is not reached."""
+"""Accuracy on demand: what is chosen, how it is refined, what is refused and what is not reached. The
+advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets.
+"""
 
 import json
+import math
+from itertools import product
+from pathlib import Path
 
 import pytest
-from builders import MODULUS, PERFECT, RADIUS, SPHERE, STEEL, scene_text
+from builders import MODULUS, PERFECT, RADIUS, SPHERE, STEEL, running_in, scene_text
 
 from sam import choose_grid
-from sam.scene import Result, Scene, SceneError, Status
-from verification.cost import accuracy
+from sam.scene import Result, Scene, SceneError, Status, load_scene
+from verification.cases.case import with_loading
+from verification.cases.cost.work_precision import ADVISED
+from verification.cases.cost.work_precision_problems import PROBLEMS
+from verification.cases.recipes import Resolution, at_ratio, sliding_scene
+from verification.cost import accuracy, advice
 from verification.cost.accuracy import Choice, chosen_scene, expected, first_choice, missed, solve
-from verification.cost.advice import table
+from verification.cost.advice import LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, advice_of, kind_of
+from verification.cost.contact import expected_contact, hertz_of
 from verification.cost.plan import plan
+from verification.cost.precision import TARGETS
 from verification.reference.hertz import CircularContact
-from verification.runs.models import FEM, SAM, ModelError
+from verification.runs.files import read_run
+from verification.runs.models import FEM, FEM_3D, MODELS, SAM, ModelError
+from verification.text.console import table_lines
 
 ELASTIC = {"body": STEEL, "counterbody": SPHERE, "loading": {"force": 0.1}}
 YIELDING = ELASTIC | {"body": STEEL | {"plasticity": PERFECT}, "loading": {"force": 0.02, "steps": 1}}
@@ -27,7 +40,9 @@ def test_the_cells_and_steps_come_from_the_table():
     """More for a smaller error, as its square root; no fewer than three grids can be made of."""
     coarse, fine = (expected(asked(each), SAM) for each in (0.05, 0.0125))
     assert coarse.cells == pytest.approx(4.2 * 1.4**2) and fine.steps >= coarse.steps == 6
-    (row,) = (each for each in table() if (each.kind, each.method, each.error) == ("yielding", SAM, 0.003))
+    (row,) = (
+        each for each in advice.table() if (each.kind, each.method, each.error) == ("yielding", SAM, 0.003)
+    )
     assert fine.cells == pytest.approx(row.resolution * (0.003 * 4.5 / 0.0125) ** 0.5, rel=0.02)
     assert expected(asked(0.005), SAM).steps > 6
     scene = chosen_scene(asked(0.0125), SAM, fine)
@@ -146,8 +161,133 @@ def test_the_command_reaches_it(folder, samfem):
     """The pressure of Hertz to 1 %: the true error is smaller still."""
     (folder / "sphere.toml").write_text(scene_text(add='[solver]\naccuracy = "1 %"\n'))
     samfem("solve", "sphere.toml")
-    summary = json.loads((folder / "sphere-sam" / "summary.json").read_text())
-    found = summary["discretisation"]["accuracy"]
+    run = read_run(folder / "sphere-sam")
+    found = run.summary["discretisation"]["accuracy"]
     assert found["reached"] and found["quantity"] == "p_max_Pa" and found["relative"] <= 0.01
     exact = CircularContact(0.65, RADIUS, MODULUS).peak_pressure
-    assert abs(summary["quantities"]["p_max_Pa"] / exact - 1) < 0.01
+    assert abs(run.quantities["p_max_Pa"] / exact - 1) < 0.01
+
+
+# advice
+
+
+SCENES = Path(advice.__file__).parents[1] / "scenes"
+
+
+def scene_of(name: str):
+    return load_scene(SCENES / f"{name}.toml")
+
+
+SWIFT = scene_of("plastic-swift-rigid")
+
+
+def row(kind, method, numbers, *, error=0.01, bound="") -> AdviceRow:
+    """numbers: resolution, seconds and time over the least."""
+    unit = "load steps" if method == LOAD_STEPS else "cells in the contact radius"
+    resolution, seconds, relative = numbers
+    cost = (seconds, 10 * seconds, relative)
+    return AdviceRow(kind, "largest plastic strain", method, error, bound, resolution, unit, 5, *cost)
+
+
+ROWS = (
+    row("yielding", SAM, (7.3, 0.42, 1.0)),
+    row("yielding", FEM, (11.0, 1.3, 3.1)),
+    row("yielding", FEM_3D, (math.nan,) * 3, bound=NEVER),
+    row("yielding", LOAD_STEPS, (14.2, 3.0, math.nan)),
+    row("yielding", SAM, (3.0, 0.1, 1.0), error=0.05, bound="<"),
+    row("elastic", SAM, (3.0, 0.05, 1.0)),
+)
+
+
+def test_every_problem_of_the_case_is_the_nearest_to_itself_and_its_table_fits_80_columns():
+    for problem in PROBLEMS:
+        own = problem.scene(scene_of(problem.file))
+        assert kind_of(own) == problem.kind
+        found = advice_of(own, (SAM, FEM, FEM_3D))["table"]
+        assert max(map(len, table_lines(found["columns"], found["rows"]))) <= 75
+
+
+DEEP = "deeply yielding"
+
+
+@pytest.mark.parametrize("ratio, kind", [(1.5, "elastic"), (1.7, "yielding"), (4.4, "yielding"), (4.6, DEEP)])
+def test_a_sphere_is_judged_by_its_elastic_pressure(ratio, kind):
+    assert kind_of(at_ratio(SWIFT, ratio)) == kind
+
+
+def test_other_scenes():
+    assert kind_of(sliding_scene(SWIFT, 1.5, 0.3, Resolution(4, 4))) == "yielding and sliding"
+    assert kind_of(running_in()) == "running-in"
+    of_files = {"hertz-ellipse": "elastic", "rough-patch": "rough, elastic", "coated-sliding": "coated"}
+    of_files |= {"rough-asperities": "rough, yielding", "flat-punch": None, "misfit-sphere": None}
+    assert {name: kind_of(scene_of(name)) for name in of_files} == of_files
+    for force in (0.0, 1e-300):
+        assert kind_of(with_loading(scene_of("plastic-perfect"), force=force)) == "elastic"
+
+
+@pytest.mark.parametrize(
+    "name, p0, kind",
+    [("hertz-sphere", 3e9, None)]
+    + [("plastic-swift-rigid", p0, kind) for p0, kind in ((4e9, "yielding"), (7e9, DEEP), (15e9, None))],
+)
+def test_a_given_pressure_is_no_result_but_the_strain_below_it_is(name, p0, kind):
+    given = with_loading(scene_of(name), force=None, prescribed="hertz", radius=5e-6, p0=p0)
+    assert kind_of(given.model_copy(update={"counterbody": None})) == kind
+
+
+def test_table_names_method_cells_time_and_origin():
+    yielding = at_ratio(SWIFT, 3.0)
+    found = advice_of(yielding, (SAM, FEM, FEM_3D), ROWS)
+    assert "case work-precision" in found["words"] and "largest plastic strain" in found["words"]
+    assert "cells in the contact radius, load steps, processor time (about)" in found["words"]
+    assert found["table"]["columns"] == ["error", "method", "cells", "steps", "time", "ratio"]
+    assert found["table"]["rows"] == [  # ten steps, five measured; the largest error first
+        ["5 %", "sam", "<= 3", "-", "0.2 s", "1"],
+        ["1 %", "sam", "8", "15", "0.8 s", "1"],
+        ["1 %", "fem-axisymmetric", "11", "15", "3 s", "3.1"],
+        ["1 %", "fem-3d", "not reached", "15", "-", "-"],
+    ]
+    assert json.loads(json.dumps(found))["rows"][2]["seconds"] is None
+    by_sam = advice_of(yielding, (SAM,), ROWS)["rows"]
+    assert {row["method"] for row in by_sam} == {SAM, LOAD_STEPS}
+    elastic = advice_of(with_loading(scene_of("hertz-sphere"), steps=40), (SAM,), ROWS)
+    assert elastic["rows"][0]["seconds"] == 0.05  # does not grow with its steps
+
+
+def test_the_committed_table_covers_every_kind_and_error():
+    rows = advice.table()
+    assert {row.kind for row in rows} == {problem.kind for problem in PROBLEMS}
+    for problem in PROBLEMS:
+        own = [row for row in rows if row.kind == problem.kind]
+        methods = {ADVISED[method.name] for method in problem.methods if method.name in ADVISED}
+        measured = {(row.method, row.error) for row in own if row.method != LOAD_STEPS}
+        assert measured == set(product(methods, TARGETS))
+        for row in own:
+            assert (row.bound == NEVER) == math.isnan(row.seconds)
+            assert row.method in (*MODELS, ON_TWO_GRIDS, LOAD_STEPS) and row.bound in ("", "<", NEVER)
+
+
+def test_plan_is_short_and_in_numbers_the_same(samfem):
+    file = SCENES / "plastic-swift-rigid.toml"
+    found = plan(load_scene(file))
+    assert json.loads(samfem("plan", file, "--json").out) == json.loads(json.dumps(found.content))
+    assert (short := samfem("plan", file).out.splitlines()) == str(found).splitlines()
+    assert len(short) == 5 + len(found.warnings)
+    assert f"sam {found.cells_in_radius:.3g}, 0.3 %" in short[1] and max(map(len, short)) <= 112
+    assert (found.error, found.contact["over_yield"]) == (0.003, pytest.approx(4.0, rel=1e-3))
+
+
+def test_the_expected_contact_is_that_of_hertz_and_of_a_light_rough_contact():
+    """An approach is turned into its force; below a plane the share has the slope 2 over p/(E* h')."""
+    pressed = scene_of("hertz-ellipse")
+    exact = hertz_of(pressed)
+    by_approach = {"force": None, "approach": exact["approach_m"]}
+    again = hertz_of(with_loading(pressed, **by_approach))
+    assert again.pop("force_N") == pytest.approx(pressed.loading.force, rel=1e-9)
+    assert again == pytest.approx({name: exact[name] for name in again}, rel=1e-9)
+    found = expected_contact(pressed)
+    assert found["p0_Pa"] == pytest.approx(exact["p_max_Pa"], rel=1e-6)
+    light = expected_contact(with_loading(scene_of("pin-recipe"), force=1e-4))
+    over = light["p_nominal_Pa"] / (2 * light["p_spots_Pa"])
+    assert light["contact_share"] == pytest.approx(2 * over, rel=1e-3)
+    assert not hertz_of(scene_of("coated-sphere")) and not hertz_of(scene_of("rough-patch"))
