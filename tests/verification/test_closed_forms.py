@@ -484,13 +484,12 @@ def test_von_mises_is_invariant_and_known_for_simple_states():
 def test_effective_modulus():
     assert math.isclose(hertz.effective_modulus(210e9, 0.3), 210e9 / 0.91)
     assert math.isclose(hertz.effective_modulus(210e9, 0.3, 210e9, 0.3), 105e9 / 0.91)
-    with pytest.raises(ValueError, match="E2 and nu2"):
-        hertz.effective_modulus(210e9, 0.3, 210e9)
 
 
 @pytest.mark.parametrize(
     "name, call",
     [
+        ("E2 and nu2", lambda: hertz.effective_modulus(210e9, 0.3, 210e9)),
         ("nu1", lambda: hertz.effective_modulus(1.0, 0.6)),
         ("E1", lambda: hertz.effective_modulus(-1.0, 0.3)),
         ("radius", lambda: hertz.CircularContact(1.0, 0.0, 1.0)),

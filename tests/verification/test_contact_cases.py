@@ -35,9 +35,6 @@ SLIDING, ASPERITIES, FILM_YIELD = (
 )
 
 
-# --- coated spheres -------------------------------------------------------------------------------------
-
-
 def test_film_and_body_are_never_mixed():
     """A field that jumps at the interface and is linear below it, on other points than those of SAM."""
 
@@ -58,9 +55,6 @@ def test_film_and_body_are_never_mixed():
         both = QUANTITIES["mises-below-film"].between(scene, sam, replace(fem, tables={"plane": scaled}))
         assert np.asarray(both.value) * factor == pytest.approx(both.expected, rel=1e-12)
         assert both.value.shape == (20, 9)
-
-
-# --- rough contacts -------------------------------------------------------------------------------------
 
 
 def asperities(load=1.0, strain=1.0, dent=1.0) -> Result:
@@ -125,9 +119,6 @@ def test_the_strain_on_either_side_of_a_jump_is_found_and_not_between_the_points
     np.testing.assert_allclose(even.below(0.0, at_z), 1.0 + at_z, rtol=1e-9)
 
 
-# --- the film that yields ---------------------------------------------------------------------------------
-
-
 class TestBondedFilm:
     p, E, nu, Y = 5e9, 80e9, 0.3, 0.67e9
 
@@ -163,9 +154,6 @@ def test_a_flowing_film_keeps_the_contact_of_the_step_before(film):
     before = replace(virgin, load=Load(1.0), active=contact, gap=gap, history=history)
     grown = model.starting_set(1.3, before)
     assert np.array_equal(grown, contact) == film and grown.sum() >= contact.sum()
-
-
-# --- sliding contacts -------------------------------------------------------------------------------------
 
 
 def strain(x, z):

@@ -1,31 +1,40 @@
 # SPDX-License-Identifier: MIT
 """Accuracy on demand: what is chosen, how it is refined, what is refused and what is not reached. The
-advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets.
+advice of `samfem plan`: which measurement a scene is nearest to, and the lines that it gets. Growth of time
+and memory: exponents, processes that measure themselves alone, the published code.
 """
 
 import json
 import math
+import os
 from itertools import product
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
-from builders import MODULUS, PERFECT, RADIUS, SPHERE, STEEL, running_in, scene_text
+from builders import MODULUS, PERFECT, RADIUS, SPHERE, STEEL, SWIFT, running_in, scene, scene_text
+from made_results import of_frame, red
 
 from sam import choose_grid
-from sam.scene import Result, Scene, SceneError, Status, load_scene
+from sam.scene import Result, Scene, SceneError, Status, load_scene, parse_scene
 from verification.cases.case import with_loading
+from verification.cases.cost import published_code
 from verification.cases.cost.work_precision import ADVISED
 from verification.cases.cost.work_precision_problems import PROBLEMS
 from verification.cases.recipes import Resolution, at_ratio, sliding_scene
-from verification.cost import accuracy, advice
+from verification.cost import accuracy, advice, estimates
 from verification.cost.accuracy import Choice, chosen_scene, expected, first_choice, missed, solve
 from verification.cost.advice import LOAD_STEPS, NEVER, ON_TWO_GRIDS, AdviceRow, advice_of, kind_of
 from verification.cost.contact import expected_contact, hertz_of
+from verification.cost.measured import alone, idle_bytes
 from verification.cost.plan import plan
 from verification.cost.precision import TARGETS
+from verification.reference.convergence import fit_power
 from verification.reference.hertz import CircularContact
 from verification.runs.files import read_run
-from verification.runs.models import FEM, FEM_3D, MODELS, SAM, ModelError
+from verification.runs.models import FEM, FEM_3D, MODELS, SAM, ModelError, check
+from verification.runs.threads import EVERY_LIBRARY as THREADS
 from verification.text.console import table_lines
 
 ELASTIC = {"body": STEEL, "counterbody": SPHERE, "loading": {"force": 0.1}}
@@ -178,7 +187,7 @@ def scene_of(name: str):
     return load_scene(SCENES / f"{name}.toml")
 
 
-SWIFT = scene_of("plastic-swift-rigid")
+STEEL_SPHERE = scene_of("plastic-swift-rigid")
 
 
 def row(kind, method, numbers, *, error=0.01, bound="") -> AdviceRow:
@@ -212,11 +221,11 @@ DEEP = "deeply yielding"
 
 @pytest.mark.parametrize("ratio, kind", [(1.5, "elastic"), (1.7, "yielding"), (4.4, "yielding"), (4.6, DEEP)])
 def test_a_sphere_is_judged_by_its_elastic_pressure(ratio, kind):
-    assert kind_of(at_ratio(SWIFT, ratio)) == kind
+    assert kind_of(at_ratio(STEEL_SPHERE, ratio)) == kind
 
 
 def test_other_scenes():
-    assert kind_of(sliding_scene(SWIFT, 1.5, 0.3, Resolution(4, 4))) == "yielding and sliding"
+    assert kind_of(sliding_scene(STEEL_SPHERE, 1.5, 0.3, Resolution(4, 4))) == "yielding and sliding"
     assert kind_of(running_in()) == "running-in"
     of_files = {"hertz-ellipse": "elastic", "rough-patch": "rough, elastic", "coated-sliding": "coated"}
     of_files |= {"rough-asperities": "rough, yielding", "flat-punch": None, "misfit-sphere": None}
@@ -236,7 +245,7 @@ def test_a_given_pressure_is_no_result_but_the_strain_below_it_is(name, p0, kind
 
 
 def test_table_names_method_cells_time_and_origin():
-    yielding = at_ratio(SWIFT, 3.0)
+    yielding = at_ratio(STEEL_SPHERE, 3.0)
     found = advice_of(yielding, (SAM, FEM, FEM_3D), ROWS)
     assert "case work-precision" in found["words"] and "largest plastic strain" in found["words"]
     assert "cells in the contact radius, load steps, processor time (about)" in found["words"]
@@ -291,3 +300,84 @@ def test_the_expected_contact_is_that_of_hertz_and_of_a_light_rough_contact():
     over = light["p_nominal_Pa"] / (2 * light["p_spots_Pa"])
     assert light["contact_share"] == pytest.approx(2 * over, rel=1e-3)
     assert not hertz_of(scene_of("coated-sphere")) and not hertz_of(scene_of("rough-patch"))
+
+
+# growth
+
+
+CELLS = np.array([1e3, 4e3, 16e3, 64e3])
+
+
+def test_a_power_is_found():
+    exact = fit_power(CELLS, 3e-7 * CELLS**1.2)
+    assert (exact.exponent, exact.factor) == pytest.approx((1.2, 3e-7), rel=1e-12)
+    assert exact.error < 1e-12 and exact(1e3) == pytest.approx(3e-7 * 1e3**1.2)
+
+
+def test_a_power_needs_three_points_in_its_range():
+    assert fit_power(CELLS, CELLS, first=4e3).first == 4e3
+    bent = fit_power(CELLS[:3], CELLS[:3] * [1.0, 1.2, 1.0])
+    assert bent.exponent == pytest.approx(1.0)
+    assert bent.error == pytest.approx(np.log(1.2) / np.log(4.0) / np.sqrt(3.0))
+    for x, y, first in (
+        (CELLS[:2], CELLS[:2], 0),
+        (CELLS[[0, 1, 1]], CELLS[:3], 0),
+        (CELLS, CELLS[:3], 0),
+        (CELLS, CELLS, 1e4),
+        (CELLS, -CELLS, 0),
+        (CELLS, CELLS * [1, 0, 1, 1], 0),
+        (CELLS, CELLS * np.nan, 0),
+    ):
+        with pytest.raises(ValueError, match="x and y"):
+            fit_power(x, y, first)
+
+
+def test_a_process_measures_its_own_memory_and_one_thread():
+    """Also after this process had much more memory than it has."""
+    idle, before = idle_bytes(SAM), {name: os.environ.get(name) for name in THREADS}
+    large = np.ones(40_000_000)
+    assert large.nbytes > 2 * idle
+    del large
+    assert idle_bytes(SAM) < 1.3 * idle  # more than twice as much if it began with that of this process
+    assert alone(os.getenv, THREADS[0]) == "1" and {name: os.environ.get(name) for name in THREADS} == before
+
+
+@pytest.mark.parametrize("model", [SAM, FEM])
+def test_a_yielding_body_without_a_load_has_an_estimate(model):
+    none = scene(body={"plasticity": SWIFT}, loading={"force": 0.0})
+    assert estimates.load_ratio(none, np.zeros(1))[0] == 0.0
+    assert np.isfinite(estimates.estimate(none, model).time_s)
+
+
+def test_back_stresses_count_by_what_they_add_at_one_per_cent():
+    """0.01 C_1 + C_2 (1 - exp(-0.01 g))/g over the yield stress, and nothing without any."""
+    kinematic = {"modulus": (50e9, 100e9), "recovery": (0.0, 300.0)}
+    added = 0.01 * 50 + 100 * (1 - np.exp(-3.0)) / 300
+    for law, hardening in ((PERFECT, 0.0), (PERFECT | {"kinematic": kinematic}, added)):
+        found = estimates._back_hardening(scene(body={"plasticity": law}), np.array([1e-6, 2e-6]))
+        assert found == pytest.approx(hardening, rel=1e-13)
+
+
+def took(time: float = 1.0, ffts: int = 100, **quantities) -> dict:
+    """What a solve took, counted and found."""
+    counts = {"ffts": ffts, "step_cuts": max(ffts - 104, 0)}
+    found = {"p_max_Pa": 1e9, "p_center_Pa": 1e-3, "contact_spots": None} | quantities
+    return {"time": time, "memory": 1e8, "counts": counts, "quantities": found, "tolerance": 1e-4}
+
+
+@pytest.mark.parametrize(("ffts", "wrong"), [(90, set()), (105, set()), (106, {"counts"}), (107, {"counts"})])
+def test_a_count_may_grow_by_two_or_a_twentieth(ffts, wrong):
+    pairs = [(took(), took(time, ffts, p_max_Pa=1.1e9, p_center_Pa=2e-3)) for time in (3.0, 1.0, 1.5)]
+    row = published_code.row_of(pairs)
+    assert (row["time ratio"], row["time ratio of pairs"], row["time [s]"]) == (1.5, "1.00 to 3.00", 1.5)
+    assert row["counts"].startswith(f"ffts 100 {ffts - 100:+d}") and row["most different"] == "p_max_Pa"
+    assert row["difference"] == pytest.approx(0.1)
+    frame = pd.DataFrame([{"sweep": "", "model": ""} | row])
+    assert red("published-code", of_frame("published-code", frame)) == wrong
+
+
+def test_the_scenes_for_the_published_code_are_read_and_can_be_solved():
+    for rung in published_code.RUNGS:
+        check(parse_scene(rung.text(published_code.ROOT).encode(), rung.file), rung.model)
+    with pytest.raises(RuntimeError, match="0 lines of cycles"):
+        published_code.Rung("", "hertz-sphere", {"cycles": "2"}).text(published_code.ROOT)
