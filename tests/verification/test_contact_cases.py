@@ -15,7 +15,6 @@ from fem_reference.common.schedule import Load
 from sam.scene import FieldMesh, Result, load_scene, parse_scene
 from verification.cases.case import with_keys
 from verification.cases.coated.film_yield import FilmContact, scene_of
-from verification.cases.sliding.sliding_sphere import limit_of_root, overtaking
 from verification.compare import measures
 from verification.compare.measures import Plane, depths_compared
 from verification.figures.maps import in_body
@@ -217,12 +216,6 @@ def test_exact_stresses_of_sam_have_no_error_and_sliding_the_other_way_a_large_o
     assert errors(found).max() < 1e-12 and QUANTITIES["plane"].of(found, reference) < 1e-12
     axis["sxz_Pa"] = -axis["sxz_Pa"]
     assert errors(found)[4] > 0.1
-
-
-def test_parabola_in_the_root_of_the_size_is_recovered():
-    h = 1.0 / np.array([18.0, 36.0, 72.0, 144.0])
-    assert limit_of_root(h, 0.3 + 0.4 * np.sqrt(h) - 0.1 * h) == pytest.approx(0.3, abs=1e-12)
-    assert overtaking() == pytest.approx(0.305, abs=5e-4)  # Hamilton's closed form
 
 
 def test_upper_bound_is_that_of_the_literature():
