@@ -37,7 +37,6 @@ late = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6, 
 point = ["relative", 1e-9, "made", "value at a point", "radius at cells = 17, loading.force = 0.3"]
 "r{1,2}" = ["relative", 1e-9, "made", "radius {1,2}", "last radius of {sam,made} | first radius of sam"]
 bound = ["at_least", 2.5, "made", "value alone", "ratio p-max at cells < 33, loading.force = 0.3"]
-{EXTRA}
 """
 
 
@@ -57,7 +56,7 @@ def made(tmp_path):
 
     def case(extra=""):
         path = tmp_path / "made.toml"
-        path.write_text(FILE.replace("{EXTRA}", extra), encoding="utf-8")
+        path.write_text(FILE + extra, encoding="utf-8")
         own = case_of(read_cases(path)[0])
         here = context("made", tmp_path)
         here.solve = solve
@@ -115,7 +114,7 @@ def test_what_is_no_take_is_refused(made, take):
 def test_what_makes_no_scene_is_refused_before_anything_is_solved(tmp_path, line, problem):
     path = tmp_path / "made.toml"
     path.with_suffix(".py").write_text("1 / 0\n")  # of the user, and none of ours
-    path.write_text(FILE.replace("levels", f"{line}\nlevels").replace("{EXTRA}", ""), encoding="utf-8")
+    path.write_text(FILE.replace("levels", f"{line}\nlevels"), encoding="utf-8")
     with pytest.raises(SceneError) as caught:
         case_of(read_cases(path)[0])
     assert str(caught.value) == f"{path}: {problem}"

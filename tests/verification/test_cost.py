@@ -319,17 +319,11 @@ def test_a_power_needs_three_points_in_its_range():
     bent = fit_power(CELLS[:3], CELLS[:3] * [1.0, 1.2, 1.0])
     assert bent.exponent == pytest.approx(1.0)
     assert bent.error == pytest.approx(np.log(1.2) / np.log(4.0) / np.sqrt(3.0))
-    for x, y, first in (
-        (CELLS[:2], CELLS[:2], 0),
-        (CELLS[[0, 1, 1]], CELLS[:3], 0),
-        (CELLS, CELLS[:3], 0),
-        (CELLS, CELLS, 1e4),
-        (CELLS, -CELLS, 0),
-        (CELLS, CELLS * [1, 0, 1, 1], 0),
-        (CELLS, CELLS * np.nan, 0),
-    ):
+    few = (CELLS[:2], CELLS[:2]), (CELLS[[0, 1, 1]], CELLS[:3]), (CELLS, CELLS[:3]), (CELLS, CELLS, 1e4)
+    wrong = (CELLS, -CELLS), (CELLS, CELLS * [1, 0, 1, 1]), (CELLS, CELLS * np.nan)
+    for points in (*few, *wrong):
         with pytest.raises(ValueError, match="x and y"):
-            fit_power(x, y, first)
+            fit_power(*points)
 
 
 def test_a_process_measures_its_own_memory_and_one_thread():
