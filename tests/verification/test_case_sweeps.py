@@ -2,7 +2,6 @@
 """Sweeps of case files, on made results whose errors are powers of the size of a cell."""
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -15,7 +14,6 @@ from verification.cases.kinds import KINDS, OVER_VARIANTS, SWEPT
 from verification.cases.plastic.plastic_convergence import growth_of_norms, limit_of_both
 from verification.cases.recipes import RECIPES, VALUES, beside
 from verification.cases.sweep import STATISTICS, evaluated, words_of
-from verification.figures.check import findings
 from verification.judging import evaluate
 from verification.references import contact_of
 from verification.rows import Take, case_files, read_cases
@@ -39,7 +37,6 @@ late = ["absolute", 1e-9, "made", "order", "order p-max at loading.force = 0.6, 
 point = ["relative", 1e-9, "made", "value at a point", "radius at cells = 17, loading.force = 0.3"]
 "r{1,2}" = ["relative", 1e-9, "made", "radius {1,2}", "last radius of {sam,made} | first radius of sam"]
 bound = ["at_least", 2.5, "made", "value alone", "ratio p-max at cells < 33, loading.force = 0.3"]
-{EXTRA}
 """
 
 
@@ -59,7 +56,7 @@ def made(tmp_path):
 
     def case(extra=""):
         path = tmp_path / "made.toml"
-        path.write_text(FILE.replace("{EXTRA}", extra), encoding="utf-8")
+        path.write_text(FILE + extra, encoding="utf-8")
         own = case_of(read_cases(path)[0])
         here = context("made", tmp_path)
         here.solve = solve
@@ -117,7 +114,7 @@ def test_what_is_no_take_is_refused(made, take):
 def test_what_makes_no_scene_is_refused_before_anything_is_solved(tmp_path, line, problem):
     path = tmp_path / "made.toml"
     path.with_suffix(".py").write_text("1 / 0\n")  # of the user, and none of ours
-    path.write_text(FILE.replace("levels", f"{line}\nlevels").replace("{EXTRA}", ""), encoding="utf-8")
+    path.write_text(FILE.replace("levels", f"{line}\nlevels"), encoding="utf-8")
     with pytest.raises(SceneError) as caught:
         case_of(read_cases(path)[0])
     assert str(caught.value) == f"{path}: {problem}"
@@ -153,7 +150,7 @@ def test_limit_of_both_and_growth_of_norms():
 
 @pytest.mark.parametrize("file", [f for f in case_files().values() if f.taken], ids=lambda file: file.name)
 def test_every_name_of_a_file_with_points_is_known(file):
-    """Recipes, columns, statistics and figures, of a registry or beside the file; a column that is taken."""
+    """Recipes, columns, statistics and figures, of a registry or beside the file; what is taken and drawn."""
     for sweep in file.sweeps.values():
         for axes in (sweep.axes, sweep.quick):
             for axis, values in axes.items():
@@ -163,29 +160,7 @@ def test_every_name_of_a_file_with_points_is_known(file):
     for take in (take for claim in file.taken for take in claim.take if take.number is None):
         assert beside(file, take.statistic, STATISTICS)
         assert file.frame or take.column in {c for sweep in file.sweeps.values() for c in sweep.columns}
-    known = KINDS | SWEPT | OVER_VARIANTS
-    assert all(beside(file, figure.split()[0], known) for figure in file.figures)
-
-
-@pytest.mark.parametrize(
-    ("file", "figure"),
-    [(file, each) for file in case_files().values() for each in file.figures if each.startswith("lines")],
-    ids=lambda each: getattr(each, "name", None),
-)
-def test_lines_of_every_file_can_be_read(file, figure):
-    """On made columns, for all values of the axes: labels say of what, and have room."""
-    _, ys, *words = figure.split()
-    said = {"in": "sweep", "by": "model"} | dict(zip(words[::2], words[1::2], strict=True))
-    columns, axes = [*ys.split(","), said["over"]], [*said["in"].split(","), *said["by"].split(",")]
-    values = [name for name in file.labels if name not in (*columns, *axes, "limit", "expected")]
-    known = dict.fromkeys(axes, values or ["one", "two"]) | {"sweep": [""]} if file.frame else {}
-    for sweep in (each for each in file.sweeps.values() if columns[0] in each.columns):
-        known |= {"model": sweep.models, **{axis: list(own) for axis, own in sweep.axes.items()}}
-    made = {column: np.array([1.0, 2.0, 3.0]) for column in (*columns, f"{columns[0]} expected")}
-    rows = [
-        dict(zip(axes, each, strict=True)) | made
-        for each in product(*(known.get(axis, [""]) for axis in axes))
-    ]
-    plot = SWEPT["lines"](file, pd.DataFrame(rows), ys, *words)
-    assert findings(plot.drawing.figure) == []
-    assert plot.name in file.captions
+    known, drawn = KINDS | SWEPT | OVER_VARIANTS, [figure.split() for figure in file.figures]
+    assert all(beside(file, kind, known) for kind, *_ in drawn)
+    lines = {words[1].partition(",")[0].replace("_", "-") for words in drawn if words[0] == "lines"}
+    assert lines <= file.captions.keys()

@@ -410,49 +410,32 @@ def test_only_what_has_a_yield_stress_is_held_to_the_flow_rule():
         assert found == pytest.approx({"flow": 0.0, "consistency": excess, "yield": excess}, abs=1e-12)
 
 
-class TestHistories:
-    """What is kept of the iterations, and why they ended."""
-
-    def test_words(self):
-        falling, flat = list(0.5 ** np.arange(30.0)), [*0.5 ** np.arange(20.0), *[2e-6] * 12]
-        assert not stagnates(falling) and stagnates(flat)
-        assert "ran out of iterations, 30" in unfinished("x", falling, 1e-12)
-        assert "stagnated" in unfinished("x", flat, 1e-12) and "1.9e-06" in unfinished("x", flat, 1e-12)
-        assert unfinished("x", [1.0, 30.0], 0.1) == unfinished("x", [0.1, np.nan], 0.1) == "x diverged"
-        assert "positive definite" in ended([], False, False) and "comes" not in ended([0.1], True, False)
-        assert "coming back" in ended([0.1], True, True)
+def test_why_an_iteration_ended_is_said_in_words():
+    falling, flat = list(0.5 ** np.arange(30.0)), [*0.5 ** np.arange(20.0), *[2e-6] * 12]
+    assert not stagnates(falling) and stagnates(flat)
+    assert "ran out of iterations, 30" in unfinished("x", falling, 1e-12)
+    assert "stagnated" in unfinished("x", flat, 1e-12) and "1.9e-06" in unfinished("x", flat, 1e-12)
+    assert unfinished("x", [1.0, 30.0], 0.1) == unfinished("x", [0.1, np.nan], 0.1) == "x diverged"
+    assert "positive definite" in ended([], False, False) and "comes" not in ended([0.1], True, False)
+    assert "coming back" in ended([0.1], True, True)
 
 
-class TestEndings:
-    """An iteration that stagnates says something else than one that ran out of iterations."""
-
+def test_a_contact_that_stagnates_says_something_else_than_one_that_ran_out_of_iterations():
     gap = np.add.outer(np.linspace(-1, 1, 33) ** 2, np.linspace(-1, 1, 33) ** 2) * 1e-7
-
-    def test_contact(self):
-        few = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5, search=Search(max_iterations=4))
-        assert not few.converged and "ran out of iterations" in few.ending
-        flat = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5, search=Search(1e-19))
-        assert not flat.converged and "stagnated" in flat.ending and flat.iterations < 1000
-        fine = solve_contact(self.gap, (1e-6, 1e-6), 1e11, 0.5)
-        assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
-
-
-# a worn body
+    few, flat, fine = (
+        solve_contact(gap, (1e-6, 1e-6), 1e11, 0.5, search=search)
+        for search in (Search(max_iterations=4), Search(1e-19), Search())
+    )
+    assert not few.converged and "ran out of iterations" in few.ending
+    assert not flat.converged and "stagnated" in flat.ending and flat.iterations < 1000
+    assert fine.converged and not fine.ending and fine.residuals[-1] <= 1e-10
 
 
-LOOSE = 1e-4
-
-
-@pytest.fixture(scope="module")
-def worn():
-    """Scene, result and records of two cycles, less exactly than the case solves them."""
+def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen():
+    """Two cycles, less exactly than the case solves them."""
     base = load_scene("verification/scenes/running-in-bulk.toml")
-    scene = with_keys(study.scene_of(base, 2), "solver", tolerance=LOOSE)
-    return scene, *solved(scene, SAM)
-
-
-def test_heights_that_are_not_worn_and_strains_of_other_cycles_are_seen(worn):
-    scene, result, records = worn
+    scene = with_keys(study.scene_of(base, 2), "solver", tolerance=1e-4)
+    result, records = solved(scene, SAM)
     before, loaded, _end = study.last_cycle(records)
     assert len(loaded) == scene.loading.steps and before.tree()["wear"]["depth"].any()
     less = with_field(result, "cell_data", "worn_m", lambda depth: 0.99 * depth)

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.special import ellipe, ellipk, ellipkm1
 
 from verification.reference import (
@@ -246,9 +247,7 @@ def test_circular_profiles_close_the_gap_and_carry_the_force():
         gap = (rho * a) ** 2 - contact.approach + quadrature  # R = 0.5
         assert abs(contact.gap(rho * a) - gap) < 1e-11 * contact.approach * (1 + rho**2)
         assert (contact.gap(rho * a) == 0) == (rho <= 1)
-    t, w = gauss(60)
-    r = a * np.sin(t * np.pi / 2)
-    force = np.sum(2 * np.pi * r * contact.pressure(r) * a * np.cos(t * np.pi / 2) * w * np.pi / 2)
+    force, _ = quad(lambda r: 2 * np.pi * r * contact.pressure(r), 0.0, a, epsabs=0.0, epsrel=1e-13)
     assert math.isclose(force, 2.0, rel_tol=1e-13)
     inverse = hertz.CircularContact.from_peak_pressure(p0, 0.5, modulus)
     assert math.isclose(inverse.force, 2.0, rel_tol=1e-14)
@@ -334,13 +333,10 @@ def test_wave_pressure_and_gap_satisfy_the_fourier_relation():
 
 
 def test_wave_mean_gap_is_the_mean_of_the_gap_and_full_contact_is_its_limit():
-    t, w = gauss(200)
     for m in (0.05, 0.5, 0.95):
         wave = westergaard.WavyContact(2e-6, 3e-3, 1e9, m * math.pi * 1e9 * 2e-6 / 3e-3)
-        width = 1.5e-3 - wave.half_width
-        x = wave.half_width + width * t**2  # (x - a)^1.5 at the edge becomes t^3
-        mean = np.sum(wave.gap(x) * 2 * width * t * w) / 1.5e-3
-        assert math.isclose(mean, wave.mean_gap, rel_tol=1e-10)
+        opened, _ = quad(wave.gap, wave.half_width, 1.5e-3, epsabs=0.0, epsrel=1e-12)
+        assert math.isclose(opened / 1.5e-3, wave.mean_gap, rel_tol=1e-10)
     full = westergaard.WavyContact(1.0, 1.0, 1.0, 2 * math.pi)
     x = np.linspace(-2, 2, 41)
     np.testing.assert_allclose(full.pressure(x), 2 * math.pi + math.pi * np.cos(2 * math.pi * x), rtol=1e-13)
@@ -484,13 +480,12 @@ def test_von_mises_is_invariant_and_known_for_simple_states():
 def test_effective_modulus():
     assert math.isclose(hertz.effective_modulus(210e9, 0.3), 210e9 / 0.91)
     assert math.isclose(hertz.effective_modulus(210e9, 0.3, 210e9, 0.3), 105e9 / 0.91)
-    with pytest.raises(ValueError, match="E2 and nu2"):
-        hertz.effective_modulus(210e9, 0.3, 210e9)
 
 
 @pytest.mark.parametrize(
     "name, call",
     [
+        ("E2 and nu2", lambda: hertz.effective_modulus(210e9, 0.3, 210e9)),
         ("nu1", lambda: hertz.effective_modulus(1.0, 0.6)),
         ("E1", lambda: hertz.effective_modulus(-1.0, 0.3)),
         ("radius", lambda: hertz.CircularContact(1.0, 0.0, 1.0)),

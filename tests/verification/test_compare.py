@@ -252,6 +252,23 @@ def test_finite_elements_in_space_count_on_both_sides_and_no_stress_at_the_edge_
     assert name not in red(SAM, wrong, scene(counterbody=SHAPES["punch"]))
 
 
+def test_sliding_the_other_way_is_noticed():
+    """Every field that has two sides differs when they are exchanged."""
+    columns = ("line", "p_Pa"), ("line", "uz_m"), ("plane", "mises_Pa")
+
+    def towards(side: float) -> Made:
+        out = replace(SAM, quantities=QUANTITIES | {"pressure_centroid_x_m": 0.02 * side})
+        for table, column in columns:
+            skew = 1 + 0.2 * side * SAM.tables[table]["x_m"]
+            out = with_column(out, table, column, lambda values, skew=skew: skew * values)
+        return out
+
+    sliding = scene(friction=0.2)
+    assert red(towards(1), towards(1), sliding) == set()
+    fields = {"p_Pa over the contact", "uz_m on the line", "mises_Pa in the plane y = 0"}
+    assert red(towards(-1), towards(1), sliding) == fields | {"pressure_centroid_x_m"}
+
+
 def test_six_stresses_of_own_data_have_a_von_mises_stress(tmp_path):
     rows = [f"{z}e-6,0,0,{-1 - z}e9,0,0,0\n" for z in range(6)]
     (tmp_path / "own.csv").write_text("z_m,sxx_Pa,syy_Pa,szz_Pa,syz_Pa,sxz_Pa,sxy_Pa\n" + "".join(rows))
@@ -262,34 +279,32 @@ def test_six_stresses_of_own_data_have_a_von_mises_stress(tmp_path):
 # the film on a rough patch
 
 
-COATED = "[body.coating]\nthickness = '100 nm'\nyoung = '80 GPa'\npoisson = 0.3\n"
+COATED = parsed(add="[body.coating]\nthickness = '100 nm'\nyoung = '80 GPa'\npoisson = 0.3\n")
 
 
 def changed(p: float | None, mises: float) -> Made:
     return Made({"p_max_change": p, "mises_max_change": mises})
 
 
-class TestVerdict:
-    scene = parsed(add=COATED)
+def test_breaking_radius_is_that_of_the_closed_form():
+    """Rigid sphere, 80 on 210 GPa: 5 % of the stress at h/a0 = 0.058."""
+    assert verdicts.breaking_radius(COATED) == pytest.approx(100e-9 / 0.058, rel=0.01)
 
-    def test_breaking_radius_is_that_of_the_closed_form(self):
-        """Rigid sphere, 80 on 210 GPa: 5 % of the stress at h/a0 = 0.058."""
-        assert verdicts.breaking_radius(self.scene) == pytest.approx(100e-9 / 0.058, rel=0.01)
 
-    @pytest.mark.parametrize(
-        ("sam", "fem", "holds", "failed"),
-        [
-            (changed(-0.02, -0.03), changed(-0.021, -0.03), True, set()),
-            (changed(-0.02, -0.06), changed(-0.021, -0.06), False, {"size of mises_max_change"}),
-            (changed(-0.049, -0.03), changed(-0.051, -0.03), False, {"size of p_max_change"}),
-            (changed(-0.02, -0.03), changed(-0.03, -0.03), True, {"p_max_change"}),
-            (changed(None, -0.03), changed(-0.03, -0.03), False, {"p_max_change", "size of p_max_change"}),
-        ],
-    )
-    def test_claim_and_agreement(self, sam, fem, holds, failed, monkeypatch):
-        monkeypatch.setattr(verdicts, "breaking_radius", lambda scene: 1.7e-6)
-        claim = verdicts.verdict(self.scene, sam, fem)
-        rows = verdicts.change_rows(sam, fem) + verdicts.claim_rows(claim, sam, fem)
-        assert claim.film_negligible == holds and {row.quantity for row in rows if not row.passed} == failed
-        assert ("NOT negligible" in claim.words) != holds
-        assert all(value is None or np.isfinite(value) for value in claim.content().values())
+@pytest.mark.parametrize(
+    ("sam", "fem", "holds", "failed"),
+    [
+        (changed(-0.02, -0.03), changed(-0.021, -0.03), True, set()),
+        (changed(-0.02, -0.06), changed(-0.021, -0.06), False, {"size of mises_max_change"}),
+        (changed(-0.049, -0.03), changed(-0.051, -0.03), False, {"size of p_max_change"}),
+        (changed(-0.02, -0.03), changed(-0.03, -0.03), True, {"p_max_change"}),
+        (changed(None, -0.03), changed(-0.03, -0.03), False, {"p_max_change", "size of p_max_change"}),
+    ],
+)
+def test_claim_and_agreement(sam, fem, holds, failed, monkeypatch):
+    monkeypatch.setattr(verdicts, "breaking_radius", lambda scene: 1.7e-6)
+    claim = verdicts.verdict(COATED, sam, fem)
+    rows = verdicts.change_rows(sam, fem) + verdicts.claim_rows(claim, sam, fem)
+    assert claim.film_negligible == holds and {row.quantity for row in rows if not row.passed} == failed
+    assert ("NOT negligible" in claim.words) != holds
+    assert all(value is None or np.isfinite(value) for value in claim.content().values())

@@ -6,8 +6,6 @@ VTK takes six components for XX, YY, ZZ, XY, YZ, XZ, whatever their names are: i
 right in that order only. Nothing is rendered, so no OpenGL is needed.
 """
 
-from functools import cache
-
 import numpy as np
 import pytest
 import pyvista
@@ -53,25 +51,14 @@ OURS = {"xx": 1.0, "yy": 1.0, "zz": 1.0, "yz": -1.0, "xz": -1.0, "xy": 1.0}
 """Components of a result record, in its order -> sign where z points the other way."""
 
 
-@pytest.fixture(scope="module")
-def solved(tmp_path_factory):
-    """Model -> (the result, its run read back), solved when it is first asked for."""
-
-    @cache
-    def of_model(model: str):
-        folder = tmp_path_factory.mktemp("run")
-        result = models.solve(CASES[model], model)
-        assert result.converged
-        write_run(result, CASES[model], folder, {})
-        return result, read_run(folder)
-
-    return of_model
-
-
-@pytest.fixture(params=CASES)
-def written(request, solved):
+@pytest.fixture(scope="module", params=CASES)
+def written(request, tmp_path_factory):
     """(the result, its run read back) of each model."""
-    return solved(request.param)
+    folder, scene = tmp_path_factory.mktemp("run"), CASES[request.param]
+    result = models.solve(scene, request.param)
+    assert result.converged
+    write_run(result, scene, folder, {})
+    return result, read_run(folder)
 
 
 def principal(xx, yy, zz, yz, xz, xy) -> np.ndarray:
