@@ -107,20 +107,6 @@ def test_broken_case_does_not_stop_the_others_and_each_level_has_its_cases(tmp_p
     assert {case["unmet"] for case in cases} == {"", "not asked for"}
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["goood", "good"], "unknown case 'goood' (did you mean good?): samfem verify --list shows all"),
-        (["--list", "br"], "unknown case 'br' (did you mean broken?)"),
-        (["--gates", "slwo"], "unknown case 'slwo' (did you mean slow?)"),
-    ],
-)
-def test_what_is_unknown_is_exit_code_2_and_nothing_is_created(tmp_path, monkeypatch, capsys, words, said):
-    monkeypatch.chdir(tmp_path)
-    assert main(["verify", *words]) == 2
-    assert said in capsys.readouterr().err and list(tmp_path.iterdir()) == []
-
-
 def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
     (tmp_path / "holiday.png").write_bytes(b"x")
     assert main(["verify", "good", "--out", str(tmp_path)]) == 2
