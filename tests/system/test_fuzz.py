@@ -1,51 +1,33 @@
 # SPDX-License-Identifier: MIT
 """Bad input: readers raise their own errors only; each gate of the case turns red on what is wrong."""
 
-import json
 import os
 import random
 import sys
 import time
 from collections import Counter
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
 import pytest
-from fake_case import FakeCase, row
 from hypothesis import HealthCheck, example, given, settings, strategies as st
 from made_results import of_frame
 
 from sam.scene import SceneError, parse_scene, read_scene
 from sam.scene.inputs import open_file
 from sam.scene.schema import parse_toml, scene_of
-from verification.cases.case import Outcome, SmallTable
 from verification.cases.robustness import bad_input as case
 from verification.cost.plan import check_needs, plan
-from verification.judging import Measured
-from verification.robustness.fuzz import (
-    KINDS,
-    MAPPINGS,
-    MESHES,
-    STUDIES,
-    TURNS,
-    BadInput,
-    good_meshes,
-    lay,
-    mutated,
-    with_mapping,
-    with_pickle,
-)
-from verification.robustness.hostile import MAPPING, MARKUP, SMALL
+from verification.robustness import fuzz
+from verification.robustness.hostile import MAPPING, SMALL
 from verification.runs import models
 from verification.runs.archive import ArchiveError, read_archive, write_archive
-from verification.suite import verify
 
 SHARED = [HealthCheck.function_scoped_fixture]
 SHARED_FOLDER = settings(max_examples=200, deadline=None, suppress_health_check=SHARED)
 LEAVES = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.dates())
-COUNT = len(TURNS)
+COUNT = len(fuzz.TURNS)
 
 
 def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
@@ -54,16 +36,16 @@ def test_some_inputs_are_valid_and_most_are_not(tmp_path, monkeypatch):
     ends = Counter(end for _, end in tally.counts.elements())
     assert tally.findings == []
     assert set(ends) == {"valid", "refused"} and ends["refused"] > ends["valid"] > 20
-    assert all(tally.counts[kind, "refused"] for kind in KINDS)
-    some = "values", "tables", MAPPINGS, STUDIES
+    assert all(tally.counts[kind, "refused"] for kind in fuzz.KINDS)
+    some = "values", "tables", fuzz.MAPPINGS, fuzz.STUDIES
     assert all(tally.counts[kind, "valid"] for kind in some)
 
 
 def test_a_good_mesh_is_read_in_each_format(tmp_path):
-    for name in good_meshes():
+    for name in fuzz.good_meshes():
         text = MAPPING.replace("own.vtu", name)
-        bad = BadInput(MESHES, *with_mapping(text.encode(), good_meshes()))
-        assert case.read_all(lay(bad, tmp_path / name), bad) == "valid"
+        bad = fuzz.BadInput(fuzz.MESHES, *fuzz.with_mapping(text.encode(), fuzz.good_meshes()))
+        assert case.read_all(fuzz.lay(bad, tmp_path / name), bad) == "valid"
 
 
 @SHARED_FOLDER
@@ -91,7 +73,7 @@ def test_any_value_at_any_key_is_a_scene_or_a_scene_error(value, keys):
 def test_any_bytes_are_an_archive_or_an_archive_error(tmp_path, noise, seed):
     path = tmp_path / "good.npz"
     write_archive(path, {"a": np.arange(12.0)}, {"x": [1, "é"]})
-    for content in (noise, mutated(random.Random(seed), path.read_bytes())):
+    for content in (noise, fuzz.mutated(random.Random(seed), path.read_bytes())):
         (tmp_path / "bad.npz").write_bytes(content)
         try:
             arrays, values = read_archive(tmp_path / "bad.npz")
@@ -102,7 +84,7 @@ def test_any_bytes_are_an_archive_or_an_archive_error(tmp_path, noise, seed):
 
 def test_nothing_in_an_archive_is_unpickled(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "bad.npz").write_bytes(with_pickle())
+    (tmp_path / "bad.npz").write_bytes(fuzz.with_pickle())
     with pytest.raises(ArchiveError):
         read_archive(tmp_path / "bad.npz")
     assert not (tmp_path / "sprung").exists()
@@ -210,27 +192,5 @@ def test_a_reader_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, read
 def test_a_command_that_misbehaves_turns_its_gate_red(tmp_path, monkeypatch, code, gates):
     if gates == {"hangs"}:
         monkeypatch.setattr(case, "COMMAND_LIMIT_S", 0.3)
-    one = [tuple(KINDS).index("values")]
+    one = [tuple(fuzz.KINDS).index("values")]
     assert red(case.judge_commands(one, tmp_path, (sys.executable, "-c", code))) == gates
-
-
-def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
-    """In the set-up, a table, a note, and the message of a case that breaks off."""
-    text = " ".join(entry for entry in MARKUP if len(entry) < 100)
-
-    def fill(context):
-        table = SmallTable(text, (text,), [(text,)])
-        return Outcome({"good.one": Measured(1.0, 1.0)}, [("Scene", text)], tables=[table], notes=[text])
-
-    def fail(context):
-        raise RuntimeError(text)
-
-    cases = FakeCase("good", text, text, does=fill), FakeCase("bad", "Bad", "Why?", does=fail)
-    monkeypatch.setattr(verify, "all_cases", lambda: {case.name: case for case in cases})
-    monkeypatch.setattr(verify, "load_rows", lambda: [row("good.one"), row("bad.one")])
-    assert verify.main([], "quick", tmp_path / "out") == 1
-    page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
-    assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page
-    assert "{{ 7 * 7 }}" in page and "\x1b" not in page
-    ElementTree.parse(tmp_path / "out" / "junit.xml")
-    json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))

@@ -9,13 +9,10 @@ import sys
 import tomllib
 from pathlib import Path
 
-import pytest
 from builders import scene_text
-from fake_case import FakeCase
 from setuptools import find_namespace_packages
 
 from verification import EXTRAS
-from verification.suite import verify
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -88,19 +85,3 @@ def test_without_its_extras_samfem_solves_and_the_rest_says_what_to_install(tmp_
     summary = json.loads((tmp_path / "s-sam/summary.json").read_text())
     assert summary["left_out"][-1] == {"stage": "meshes", "reason": left_out}
     assert not [*tmp_path.glob("*/*.vt*"), *tmp_path.glob("*/*.pvd"), *tmp_path.rglob("*.png")]
-
-
-def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):
-    """The page and results.json have the reason; nothing of it is red."""
-    from test_report import CASES, ROWS  # noqa: PLC0415 - found once its folder is collected
-
-    why = "install nothing: pip install x"
-    unmet = FakeCase("slow", "Slow case", "Does it hold?", needs=lambda: why, does=pytest.fail)
-    monkeypatch.setattr(verify, "all_cases", lambda: CASES | {"slow": unmet})
-    monkeypatch.setattr(verify, "load_rows", lambda: ROWS)
-    assert verify.main(["good", "slow"], "quick", tmp_path / "out") == 0
-    assert f"slow: not run: {why}" in capsys.readouterr().out
-    found = json.loads((tmp_path / "out/results.json").read_text())["cases"]
-    records = {case["name"]: (case["status"], case["unmet"]) for case in found}
-    assert records["slow"] == ("not run", why) and records["good"] == ("passed", "")
-    assert f": {why}" in (tmp_path / "out/other.html").read_text()

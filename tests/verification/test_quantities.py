@@ -23,15 +23,8 @@ from verification.quantities import OF_TRACKS, QUANTITIES, Reference, Solved, Va
 from verification.reference.convergence import extrapolate
 from verification.reference.westergaard import WavyContact
 from verification.references import double_wave, wave
+from verification.runs import sampling
 from verification.runs.models import FEM, SAM
-from verification.runs.sampling import (
-    means_of_cells,
-    means_of_line,
-    plane_field_on,
-    pressure_on,
-    ring_edges,
-    surface_pressure,
-)
 
 X, Y, Z = np.linspace(-3.0, 3.0, 13), np.linspace(-2.0, 2.0, 9), np.linspace(0.0, 4.0, 9)
 
@@ -203,7 +196,7 @@ class TestSampling:
     def test_unequal_cells_keep_their_directions(self):
         nodes = np.array([[x, y, 0.0] for x in (0.0, 2.0, 4.0) for y in (0.0, 1.0, 2.0, 3.0)])
         quads = np.array([[k, k + 4, k + 5, k + 1] for k in (0, 1, 2, 4, 5, 6)])
-        x, y, p = surface_pressure(nodes, quads, np.arange(6.0))
+        x, y, p = sampling.surface_pressure(nodes, quads, np.arange(6.0))
         assert x.tolist() == [1.0, 3.0] and y.tolist() == [0.5, 1.5, 2.5]
         assert p.tolist() == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
 
@@ -213,26 +206,26 @@ class TestSampling:
         line = {"state": ["peak"] * r.size, "x_m": r, "p_Pa": np.sqrt(np.maximum(1.0 - r**2, 0.0))}
         x, y = np.array([-0.31, 0.123]), np.array([0.4567])
         exact = 1.0 - (x[:, None] ** 2 + y**2)
-        assert np.abs(pressure_on(x, y, {"line": line}) ** 2 - exact).max() <= 1.0 / (4.0 * 400**2)
+        assert np.abs(sampling.pressure_on(x, y, {"line": line}) ** 2 - exact).max() <= 1.0 / (4.0 * 400**2)
 
     def test_linear_field_is_reproduced_and_nothing_extrapolated(self):
         r, z = np.linspace(0.02, 3.0, 41), np.linspace(0.03, 3.0, 43)
         plane = of_plane(r, z, "mises_Pa", lambda _, z: 2.0 + 5.0 * z)
         x, depths = np.array([-1.0, 0.0, 0.7]), np.array([0.0, 0.5, 1.0])
-        field = plane_field_on(x, depths, {"plane": plane}, "mises_Pa")
+        field = sampling.plane_field_on(x, depths, {"plane": plane}, "mises_Pa")
         assert np.isnan(field[:, 0]).all() and np.allclose(field[:, 1:], [4.5, 7.0], rtol=1e-12)
         whole = of_plane(2.0 * (r - 1.5), z, "mises_Pa", lambda x, _: 3.5 + x / 2.0)  # not symmetric
-        field = plane_field_on(np.array([-1.0, 0.7]), np.array([0.5]), {"plane": whole}, "mises_Pa")
+        field = sampling.plane_field_on(np.array([-1.0, 0.7]), np.array([0.5]), {"plane": whole}, "mises_Pa")
         assert np.allclose(field[:, 0], [3.0, 3.85], rtol=1e-12)
 
 
 class TestRings:
-    edges = ring_edges(0.1, 1.0)
+    edges = sampling.ring_edges(0.1, 1.0)
 
     def test_line_gives_the_exact_means_of_a_cone(self):
         """p = 1 - r: mean over a..b is 1 - (2/3)(b^3 - a^3)/(b^2 - a^2), whatever the nodes."""
         r = np.array([0.0, 0.07, 0.5, 0.55, 1.0, 1.3])
-        found = means_of_line(r, np.maximum(1.0 - r, 0.0), self.edges)
+        found = sampling.means_of_line(r, np.maximum(1.0 - r, 0.0), self.edges)
         exact = 1.0 - 2.0 / 3.0 * np.diff(self.edges**3) / np.diff(self.edges**2)
         assert found == pytest.approx(exact, rel=1e-13)
 
@@ -240,7 +233,7 @@ class TestRings:
         """Four squares around the axis with sides of 1 m, and four beyond them in x."""
         p = np.array([[9.0, 9.0], [1.0, 2.0], [3.0, 4.0], [7.0, 7.0]])
         x, y = np.arange(4) - 1.5, np.arange(2) - 0.5
-        inner, outer, last = means_of_cells(x, y, p, np.array([0.0, 1.0, 1.5, 2.3]))
+        inner, outer, last = sampling.means_of_cells(x, y, p, np.array([0.0, 1.0, 1.5, 2.3]))
         assert inner == pytest.approx(2.5, rel=1e-14) and 2.5 < outer < 8.0
         assert last == pytest.approx(8.0, rel=1e-14)
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
+"""What `samfem verify` and `samfem report` write, with small cases; whole cases from the store."""
 
 import errno
 import json
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -13,16 +14,18 @@ from fake_case import FakeCase, row
 from made_results import context
 from matplotlib.lines import Line2D
 from page_checks import PageReader, broken_links, faults_of
-from stored import COARSE, COARSE_KEYS
+from stored import COARSE, COARSE_KEYS, flipped
 
 from samfem.cli import main
 from verification.cases.case import Outcome, Plot, SmallTable
 from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
+from verification.robustness.hostile import MARKUP
 from verification.runs import models
 from verification.runs.files import FolderError
-from verification.suite import verify
+from verification.runs.store import Store
+from verification.suite import outcomes, verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -279,3 +282,120 @@ def test_a_file_of_own_rows_is_verified_by_the_same_rules(tmp_path, monkeypatch,
         (tmp_path / "my-contact.toml").write_text(OWN.format(value=1).replace(old, new), encoding="utf-8")
         assert main(["verify", *arguments]) == 2
         assert said in (text := capsys.readouterr().err) and "my-contact.toml" in text
+
+
+def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
+    """In the set-up, a table, a note, and the message of a case that breaks off."""
+    text = " ".join(entry for entry in MARKUP if len(entry) < 100)
+
+    def fill(context):
+        table = SmallTable(text, (text,), [(text,)])
+        return Outcome({"good.one": Measured(1.0, 1.0)}, [("Scene", text)], tables=[table], notes=[text])
+
+    def fail(context):
+        raise RuntimeError(text)
+
+    monkeypatch.setitem(CASES, "good", replace(CASES["good"], title=text, question=text, does=fill))
+    monkeypatch.setitem(CASES, "bad", replace(CASES["bad"], does=fail))
+    assert run(tmp_path / "out", "good", "bad") == 1
+    page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page
+    assert "{{ 7 * 7 }}" in page and "\x1b" not in page
+    ElementTree.parse(tmp_path / "out" / "junit.xml")
+    assert results(tmp_path / "out")["complete"]
+
+
+def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):
+    """The page and results.json have the reason; nothing of it is red."""
+    why = "install nothing: pip install x"
+    unmet = replace(CASES["slow"], needs=lambda: why, does=pytest.fail)
+    monkeypatch.setitem(CASES, "slow", unmet)
+    assert run(tmp_path / "out", "good", "slow") == 0
+    assert f"slow: not run: {why}" in capsys.readouterr().out
+    records = {case["name"]: (case["status"], case["unmet"]) for case in results(tmp_path / "out")["cases"]}
+    assert records["slow"] == ("not run", why) and records["good"] == ("passed", "")
+    assert f": {why}" in page_of(tmp_path / "out").text
+
+
+# whole cases
+
+
+class Small:
+    """A case that solves the coarse scene with SAM, draws, and counts its runs."""
+
+    runs = 0
+
+    def __call__(self, context):
+        self.runs += 1
+        context.scene("starts/sliding")
+        outcome = solved(context, "small.one")
+        outcome.setup = [("Force", "1 N")]
+        return outcome
+
+
+@pytest.fixture
+def small(monkeypatch, counted):
+    case = Small()
+    cases = {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
+    monkeypatch.setattr(verify, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
+    return case
+
+
+def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
+    assert verify.main([], level, tmp_path / name, store=Store(tmp_path / "store")) == code
+    return json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8"))
+
+
+def tree_of(folder: Path) -> dict[str, bytes]:
+    chosen = [*(folder / "figures").rglob("*"), *(folder / "runs").rglob("*"), folder / "gates.csv"]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in chosen if path.is_file()}
+
+
+def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small, counted, capsys):
+    first = report_of(tmp_path)
+    second = report_of(tmp_path, name="again")
+    assert small.runs == 1 and counted == [models.SAM]
+    assert tree_of(tmp_path / "out") == (files := tree_of(tmp_path / "again")) and len(files) == 14
+    assert {Path(name).suffix for name in files} >= {".json", ".csv", ".png", ".pvd", ".vtu", ".vtr"}
+    assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
+    assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}
+    assert first["gates"] == second["gates"]
+    assert second["provenance"]["input_sha256"].keys() == {"starts/sliding.toml"}
+    pages = [(tmp_path / name / "index.html").read_text(encoding="utf-8") for name in ("out", "again")]
+    assert "1 solved, 0 taken" in pages[0] and "0 solved, 1 taken from the store" in pages[1]
+    said = capsys.readouterr().out
+    assert "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1" in said
+    assert "1 of 1: small: 1 gate passed, from the store\n" in said
+    assert report_of(tmp_path, level="full")["solves"]["cases"] == 0  # another level is another outcome
+    assert small.runs == 2 and counted == [models.SAM]
+
+
+def test_gates_of_a_reused_case_are_judged_anew(tmp_path, small, monkeypatch):
+    report_of(tmp_path)
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM", tolerance=0.001)])
+    assert report_of(tmp_path, code=1)["gates"][0]["status"] == "failed" and small.runs == 1
+
+
+@pytest.mark.parametrize("why", ["other code", "another scene", "damaged"])
+def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
+    tmp_path, small, counted, monkeypatch, capsys, why
+):
+    report_of(tmp_path)
+    asked = Store(tmp_path / "store"), verify.all_cases()["small"], "quick"
+    assert outcomes.is_kept(*asked)
+    if why == "damaged":
+        (entry,) = [entry for entry in Store(tmp_path / "store").entries() if entry.kind == "outcome"]
+        assert entry.what == "small, quick" and entry.state == "current"
+        flipped(entry.path, entry.size // 2)
+    with monkeypatch.context() as patched:
+        if why == "other code":
+            patched.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
+            assert not outcomes.is_kept(*asked)
+        elif why == "another scene":
+            patched.setattr(outcomes, "present", lambda name: b"title")
+        solves = report_of(tmp_path)["solves"]
+    damaged = int(why == "damaged")
+    assert solves == {"solved": 0, "reused": 1, "cases": 0, "stale": 1 - damaged, "damaged": damaged}
+    assert small.runs == 2 and counted == [models.SAM]
+    assert ("small: damaged: " in capsys.readouterr().err) == bool(damaged)
