@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What `samfem verify` and `samfem report` write, with small cases; whole cases from the store."""
+"""What `samfem verify`, `report` and `publish` write, with small cases; whole cases from the store; a
+publication that is killed on the way goes on with what is missing, to the same values and figures.
+"""
 
 import errno
+import gzip
 import json
+from concurrent.futures import Executor, Future
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,14 +14,14 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from builders import parsed, scene_text
-from fake_case import FakeCase, row
-from made_results import context
+from made_results import FakeCase, context, row
 from matplotlib.lines import Line2D
 from page_checks import PageReader, broken_links, faults_of
 from stored import COARSE, COARSE_KEYS, flipped
 
+from samfem import publishing
 from samfem.cli import main
-from verification.cases.case import Outcome, Plot, SmallTable
+from verification.cases.case import Figure, Outcome, Plot, SmallTable
 from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
@@ -25,7 +29,7 @@ from verification.robustness.hostile import MARKUP
 from verification.runs import models
 from verification.runs.files import FolderError
 from verification.runs.store import Store
-from verification.suite import outcomes, verify
+from verification.suite import freshness, outcomes, verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -399,3 +403,138 @@ def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
     assert solves == {"solved": 0, "reused": 1, "cases": 0, "stale": 1 - damaged, "damaged": damaged}
     assert small.runs == 2 and counted == [models.SAM]
     assert ("small: damaged: " in capsys.readouterr().err) == bool(damaged)
+
+
+NAMES = ("timed", "first", "second")
+PUBLISHED_ROWS = [row(f"{name}.one") for name in NAMES]
+
+
+class Here(Executor):
+    """In place of the processes: this one."""
+
+    alone, most_deaths, lost, started = False, 1, 0, []
+
+    def __init__(self, count, fresh):
+        assert fresh
+        self.executor, self.count = self, count
+
+    def slots(self):
+        return self.count
+
+    def died(self, error):
+        return False
+
+    def submit(self, function, /, *arguments):
+        self.started.append((arguments[0], self.count))
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+class Published:
+    """Cases that solve and draw; a kill strikes the one that is named, after its solve."""
+
+    def __init__(self):
+        self.killed, self.problem, self.runs = set(), "", []
+
+    def case(self, name: str) -> FakeCase:
+        def does(context):
+            self.runs.append(name)
+            outcome = solved(context, f"{name}.one")
+            if name in self.killed:
+                self.killed.remove(name)
+                raise KeyboardInterrupt
+            if name == self.problem:
+                raise RuntimeError("no")
+            return outcome
+
+        return FakeCase(name, name, "Does it hold?", alone=name == "timed", does=does)
+
+
+@pytest.fixture
+def published(monkeypatch, counted):
+    made = Published()
+    for module in (publishing, freshness):
+        monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
+    for module in (verify, freshness):
+        monkeypatch.setattr(module, "load_rows", lambda: PUBLISHED_ROWS)
+    monkeypatch.setattr(publishing, "Processes", Here)
+    monkeypatch.setattr(Here, "started", [])
+    return made
+
+
+def publish_in(base, out="out", store="store", code=0) -> dict[str, bytes]:
+    """The figures and the table of gates."""
+    where = {"out": base / out, "store": base / store}
+    assert publishing.publish([], level="full", workers=2, **where) == code
+    paths = *(base / out / "figures").iterdir(), base / out / "gates.csv"
+    return {path.name: path.read_bytes() for path in paths}
+
+
+def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tmp_path, published, counted):
+    published.killed = {"second", "timed"}
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            publish_in(tmp_path)
+        assert not (tmp_path / "out" / "results.json").exists()
+    found = publish_in(tmp_path)
+    assert published.runs == ["first", "second", "second", "timed", "timed"] and counted == [models.SAM]
+    assert found == publish_in(tmp_path, "other", "other-store")
+    assert {"gates.csv", *(f"{name}-curve.png" for name in NAMES)} <= found.keys()
+    table = tmp_path / "other" / "figures" / "first-curve.csv"
+    table.write_text("x,y\n" * 2000)
+    figure = outcomes.packed(Figure("", "", "", "", "figures/first-curve.csv"), tmp_path / "other")
+    assert gzip.decompress((tmp_path / "other" / figure.csv).read_bytes()) == b"x,y\n" * 2000
+    assert outcomes.packed(figure, tmp_path / "other") == figure and not table.exists()
+    assert not (tmp_path / "store" / publishing.SCRATCH).exists()
+    assert not (tmp_path / "out" / "runs").exists()
+
+
+def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, published):
+    first = publish_in(tmp_path)
+    assert Here.started == [("first", 2), ("second", 2), ("timed", 1)]
+    assert publish_in(tmp_path, "again") == first and len(published.runs) == 3
+    before = results(tmp_path / "out")
+    assert (
+        publish_in(tmp_path, store="new") == first and len(published.runs) == 3
+    )  # of this code, without a store
+    assert [results(tmp_path / "out")[key] for key in ("cases", "gates")] == [
+        before["cases"],
+        before["gates"],
+    ]
+
+
+def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):
+    published.problem = "second"
+    publish_in(tmp_path, code=1)
+    cases = results(tmp_path / "out")["cases"]
+    status = {case["name"]: (case["status"], case["failure"][:16]) for case in cases}
+    assert status["second"] == ("failed", "RuntimeError: no") and status["first"] == ("passed", "")
+    assert "of 3: second: RuntimeError: no" in capsys.readouterr().out
+    published.problem = ""
+    publish_in(tmp_path)
+    assert published.runs == ["first", "second", "timed", "second"]
+
+
+def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, published, capsys):
+    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish(["frist"], out=tmp_path / "out", **where) == 2
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    assert publishing.publish([], out=tmp_path / "mine", **where) == 2
+    assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
+    assert published.runs == []
+
+
+def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
+    before = publish_in(tmp_path)
+    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish([], level="quick", **where) == 2
+    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
+    assert publish_in(tmp_path) == before
+
+
+def test_a_case_that_belongs_to_another_level_now_is_left_out(tmp_path, published, monkeypatch):
+    publish_in(tmp_path)
+    monkeypatch.setattr(FakeCase, "published_at", lambda case, _: case.name != "second")
+    assert not any(name.startswith("second") for name in publish_in(tmp_path))
