@@ -64,14 +64,6 @@ def test_solve_writes_a_result_that_agrees_with_hertz(folder, samfem, monkeypatc
     assert {entry.name for entry in folder.iterdir()} == {"sphere.toml", "coarse.toml", f"sphere-{model}"}
 
 
-def test_solve_replaces_an_older_result_and_python_gives_the_same(folder, samfem):
-    for _ in range(2):
-        samfem("solve", "coarse.toml", "--out", "out/deep")
-    run = read_run(folder / "out" / "deep")
-    assert set(run.tables["line"]["state"]) == {"peak", "unloaded"}
-    assert run.quantities == sam.solve(sam.scene.load_scene(folder / "coarse.toml")).quantities
-
-
 @pytest.mark.parametrize("target", ["sphere.toml", "sphere.toml/run", ".", "x" * 300])
 def test_a_folder_that_must_not_be_written_to_is_refused_before_solving(refused, monkeypatch, target):
     monkeypatch.setattr(models, "solve", lambda *_: pytest.fail("solved"))
