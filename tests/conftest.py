@@ -16,12 +16,14 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 for name in THREADS:  # BLAS reads them when numpy is loaded, here and in the processes that are started
     os.environ.setdefault(name, "1")
 
-from builders import COARSE, scene_text  # noqa: E402 - these load numpy
+import stored  # noqa: E402 - these load numpy
+from builders import COARSE, scene_text  # noqa: E402
 from hypothesis import settings  # noqa: E402
 from hypothesis.internal.conjecture import providers  # noqa: E402
 
 from samfem.cli import main  # noqa: E402
-from verification.runs import meshes  # noqa: E402
+from verification.runs import meshes, models  # noqa: E402
+from verification.runs.store import Store  # noqa: E402
 
 # the same examples in every run, on a machine of any speed: none of the numbers in the sources of the modules
 # that happen to be loaded, which takes seconds; nothing is written
@@ -93,3 +95,30 @@ def refused(folder, samfem):
         return said
 
     return run
+
+
+@pytest.fixture(scope="session")
+def coarse_results():
+    return {model: models.solve(stored.COARSE, model) for model in stored.BOTH}
+
+
+@pytest.fixture
+def kept(tmp_path, coarse_results):
+    """A store with the results of both models."""
+    kept = Store(tmp_path / "store")
+    for model, result in coarse_results.items():
+        kept.keep(stored.COARSE, model, result)
+    return kept
+
+
+@pytest.fixture
+def counted(monkeypatch, coarse_results):
+    """The models that were asked to solve; they answer at once."""
+    calls = []
+
+    def solve(scene, model, progress=None, **how):
+        calls.append(model)
+        return coarse_results[model]
+
+    monkeypatch.setattr(models, "solve", solve)
+    return calls

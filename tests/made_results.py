@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Results that no solver made, results that are changed, and the gates that turn red on them."""
+"""Results that no solver made or that are changed, the gates that turn red on them; cases of a function."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sam.scene import FieldMesh
 from verification.cases import all_cases
-from verification.cases.case import Context
-from verification.judging import evaluate
+from verification.cases.case import Case, Context, Outcome
+from verification.judging import Row, evaluate
 from verification.quantities import Solved
 from verification.rows import load_rows
 
@@ -100,3 +101,19 @@ def red(case: str, values: dict, prefix: str = "", whole: bool = False) -> set[s
     verdicts = [v for v in evaluate(load_rows(), {case: named}) if v.row.id in named or whole]
     assert {v.row.id for v in verdicts} >= set(named)
     return {v.row.id.removeprefix(f"{case}.{prefix}") for v in verdicts if v.status.red}
+
+
+@dataclass(frozen=True)
+class FakeCase(Case):
+    """A case that runs `does` in place of the parts, for tests of what stands around the cases."""
+
+    does: Callable[[Context], Outcome] | None = None
+
+    def run(self, context):
+        return self.does(context)
+
+
+def row(name: str, case: str = "", **changed) -> Row:
+    """A row that holds a value to a tenth of another, or with what is changed of it."""
+    said = {"quantity": name, "metric": "relative", "tolerance": 0.1, "reason": "because", "kind": "exact"}
+    return Row(id=name, case=case or name.partition(".")[0], **said | changed)

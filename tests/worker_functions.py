@@ -15,10 +15,6 @@ def double(value: float) -> float:
     return 2.0 * value
 
 
-def fail(_value: float) -> float:
-    raise ZeroDivisionError("on purpose")
-
-
 def environment() -> dict[str, str]:
     return dict(os.environ)
 

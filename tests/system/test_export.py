@@ -63,22 +63,6 @@ def test_an_exported_mesh_reads_back_to_the_last_digit(runs, folder, samfem, mod
 
 
 @pytest.mark.parametrize(
-    "words, named",
-    [
-        (["none", "--format", "msh"], "there is no such folder"),
-        (["RUN", "--format", "stl"], "'stl'"),
-        (["RUN", "--format", "msh", "--part", "body"], "has no body: it has fields, surface"),
-        (["RUN", "--format", "msh", "--state", "unloaded"], "has no fields-unloaded: it has fields, surface"),
-        (["RUN", "--format", "msh", "--out", "mesh.inp"], "ends in .msh"),
-        (["RUN", "--format", "msh", "--out", "deep/mesh.msh"], "deep/mesh.msh"),
-    ],
-)
-def test_what_cannot_be_exported_is_named_and_nothing_is_written(runs, refused, words, named):
-    run = str(runs / models.FEM)
-    assert named in refused("export", *(run if word == "RUN" else word for word in words))
-
-
-@pytest.mark.parametrize(
     "words", [["export", "--format", "msh", "--part", "surface"], ["view"], ["report", "--pdf"]]
 )
 def test_a_run_whose_mesh_is_damaged_is_refused(runs, folder, refused, words, monkeypatch):

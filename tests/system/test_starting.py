@@ -52,20 +52,6 @@ def test_nothing_is_overwritten(folder, samfem):
     assert (folder / "measured.csv").read_text() == "mine"
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("new", "cube"), "cube"),
-        (("new", "sphere", "--out", "nowhere/a.toml"), "no folder nowhere"),
-        (("examples", "cube"), "no example 'cube'"),
-        (("examples", "../scenes/pin"), "no example"),
-        (("completion", "ksh"), "ksh"),
-    ],
-)
-def test_wrong_words_are_refused_and_nothing_is_made(refused, words, said):
-    assert said in refused(*words)
-
-
 def test_examples_are_listed_and_copied_with_their_files(folder, samfem):
     listed = samfem("examples").out
     assert "hertz-sphere" in listed and "pin" in listed

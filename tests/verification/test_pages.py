@@ -9,8 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from made_histories import as_the_paper_says
-from made_studies import verdicts
+from made_histories import as_the_paper_says, verdicts
 from page_checks import PageReader, broken_links, faults_of
 
 from verification.cases import all_cases

@@ -1,28 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""What `samfem verify` and `samfem report` write, with small cases that solve nothing."""
+"""What `samfem verify`, `report` and `publish` write, with small cases; whole cases from the store; a
+publication that is killed on the way goes on with what is missing, to the same values and figures.
+"""
 
 import errno
+import gzip
 import json
+from concurrent.futures import Executor, Future
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from builders import parsed, scene_text
-from fake_case import FakeCase, row
-from made_results import context
+from made_results import FakeCase, context, row
 from matplotlib.lines import Line2D
 from page_checks import PageReader, broken_links, faults_of
-from stored import COARSE, COARSE_KEYS
+from stored import COARSE, COARSE_KEYS, flipped
 
+from samfem import publishing
 from samfem.cli import main
-from verification.cases.case import Outcome, Plot, SmallTable
+from verification.cases.case import Figure, Outcome, Plot, SmallTable
 from verification.figures.style import Drawing, new_figure
 from verification.judging import Measured
 from verification.references import contact_of
+from verification.robustness.hostile import MARKUP
 from verification.runs import models
 from verification.runs.files import FolderError
-from verification.suite import verify
+from verification.runs.store import Store
+from verification.suite import freshness, outcomes, verify
 
 ROWS = [
     row(f"{case}.{name}", quantity=f"quantity {name}, FEM", reason=f"because of {name}")
@@ -107,35 +114,11 @@ def test_broken_case_does_not_stop_the_others_and_each_level_has_its_cases(tmp_p
     assert {case["unmet"] for case in cases} == {"", "not asked for"}
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["goood", "good"], "unknown case 'goood' (did you mean good?): samfem verify --list shows all"),
-        (["--list", "br"], "unknown case 'br' (did you mean broken?)"),
-        (["--gates", "slwo"], "unknown case 'slwo' (did you mean slow?)"),
-    ],
-)
-def test_what_is_unknown_is_exit_code_2_and_nothing_is_created(tmp_path, monkeypatch, capsys, words, said):
-    monkeypatch.chdir(tmp_path)
-    assert main(["verify", *words]) == 2
-    assert said in capsys.readouterr().err and list(tmp_path.iterdir()) == []
-
-
 def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
     (tmp_path / "holiday.png").write_bytes(b"x")
     assert main(["verify", "good", "--out", str(tmp_path)]) == 2
     assert "holds files that are no verification report" in capsys.readouterr().err
     assert [path.name for path in tmp_path.rglob("*")] == ["holiday.png"]
-
-
-def test_a_case_of_the_suite_from_end_to_end(tmp_path, monkeypatch):
-    """The ellipse is the quickest; its report holds the page, the figures and the run."""
-    monkeypatch.undo()
-    assert run(tmp_path, "hertz-ellipse") == 0
-    assert (tmp_path / "elastic.html").stat().st_size > 0
-    assert (tmp_path / "runs/hertz-ellipse/sam/summary.json").stat().st_size > 0
-    for kind in ("png", "csv.gz"):
-        assert (tmp_path / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
 
 
 def test_a_solve_that_does_not_converge_breaks_its_case_off(tmp_path):
@@ -293,3 +276,255 @@ def test_a_file_of_own_rows_is_verified_by_the_same_rules(tmp_path, monkeypatch,
         (tmp_path / "my-contact.toml").write_text(OWN.format(value=1).replace(old, new), encoding="utf-8")
         assert main(["verify", *arguments]) == 2
         assert said in (text := capsys.readouterr().err) and "my-contact.toml" in text
+
+
+def test_markup_and_control_characters_do_no_harm_in_a_report(tmp_path, monkeypatch):
+    """In the set-up, a table, a note, and the message of a case that breaks off."""
+    text = " ".join(entry for entry in MARKUP if len(entry) < 100)
+
+    def fill(context):
+        table = SmallTable(text, (text,), [(text,)])
+        return Outcome({"good.one": Measured(1.0, 1.0)}, [("Scene", text)], tables=[table], notes=[text])
+
+    def fail(context):
+        raise RuntimeError(text)
+
+    monkeypatch.setitem(CASES, "good", replace(CASES["good"], title=text, question=text, does=fill))
+    monkeypatch.setitem(CASES, "bad", replace(CASES["bad"], does=fail))
+    assert run(tmp_path / "out", "good", "bad") == 1
+    page = (tmp_path / "out" / "other.html").read_text(encoding="utf-8")
+    assert "<script>alert" not in page and "<img src=x" not in page and "&lt;script&gt;alert" in page
+    assert "{{ 7 * 7 }}" in page and "\x1b" not in page
+    ElementTree.parse(tmp_path / "out" / "junit.xml")
+    assert results(tmp_path / "out")["complete"]
+
+
+def test_a_case_that_is_not_run_does_not_stop_the_others(tmp_path, monkeypatch, capsys):
+    """The page and results.json have the reason; nothing of it is red."""
+    why = "install nothing: pip install x"
+    unmet = replace(CASES["slow"], needs=lambda: why, does=pytest.fail)
+    monkeypatch.setitem(CASES, "slow", unmet)
+    assert run(tmp_path / "out", "good", "slow") == 0
+    assert f"slow: not run: {why}" in capsys.readouterr().out
+    records = {case["name"]: (case["status"], case["unmet"]) for case in results(tmp_path / "out")["cases"]}
+    assert records["slow"] == ("not run", why) and records["good"] == ("passed", "")
+    assert f": {why}" in page_of(tmp_path / "out").text
+
+
+# whole cases
+
+
+class Small:
+    """A case that solves the coarse scene with SAM, draws, and counts its runs."""
+
+    runs = 0
+
+    def __call__(self, context):
+        self.runs += 1
+        context.scene("starts/sliding")
+        outcome = solved(context, "small.one")
+        outcome.setup = [("Force", "1 N")]
+        return outcome
+
+
+@pytest.fixture
+def small(monkeypatch, counted):
+    case = Small()
+    cases = {"small": FakeCase("small", "Small case", "Does it hold?", does=case)}
+    monkeypatch.setattr(verify, "all_cases", lambda: cases)
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM")])
+    return case
+
+
+def report_of(tmp_path, code=0, name="out", level="quick") -> dict:
+    assert verify.main([], level, tmp_path / name, store=Store(tmp_path / "store")) == code
+    return json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8"))
+
+
+def tree_of(folder: Path) -> dict[str, bytes]:
+    chosen = [*(folder / "figures").rglob("*"), *(folder / "runs").rglob("*"), folder / "gates.csv"]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in chosen if path.is_file()}
+
+
+def test_a_case_runs_once_and_its_files_come_back_byte_for_byte(tmp_path, small, counted, capsys):
+    first = report_of(tmp_path)
+    second = report_of(tmp_path, name="again")
+    assert small.runs == 1 and counted == [models.SAM]
+    assert tree_of(tmp_path / "out") == (files := tree_of(tmp_path / "again")) and len(files) == 14
+    assert {Path(name).suffix for name in files} >= {".json", ".csv", ".png", ".pvd", ".vtu", ".vtr"}
+    assert first["solves"] == {"solved": 1, "reused": 0, "cases": 0, "stale": 0, "damaged": 0}
+    assert second["solves"] == {"solved": 0, "reused": 1, "cases": 1, "stale": 0, "damaged": 0}
+    assert first["gates"] == second["gates"]
+    assert second["provenance"]["input_sha256"].keys() == {"starts/sliding.toml"}
+    pages = [(tmp_path / name / "index.html").read_text(encoding="utf-8") for name in ("out", "again")]
+    assert "1 solved, 0 taken" in pages[0] and "0 solved, 1 taken from the store" in pages[1]
+    said = capsys.readouterr().out
+    assert "0 solved, 1 taken from the store; cases not run again, code and scenes unchanged: 1" in said
+    assert "1 of 1: small: 1 gate passed, from the store\n" in said
+    assert report_of(tmp_path, level="full")["solves"]["cases"] == 0  # another level is another outcome
+    assert small.runs == 2 and counted == [models.SAM]
+
+
+def test_gates_of_a_reused_case_are_judged_anew(tmp_path, small, monkeypatch):
+    report_of(tmp_path)
+    monkeypatch.setattr(verify, "load_rows", lambda: [row("small.one", quantity="one, FEM", tolerance=0.001)])
+    assert report_of(tmp_path, code=1)["gates"][0]["status"] == "failed" and small.runs == 1
+
+
+@pytest.mark.parametrize("why", ["other code", "another scene", "damaged"])
+def test_a_case_of_other_code_or_scene_runs_again_on_stored_results(
+    tmp_path, small, counted, monkeypatch, capsys, why
+):
+    report_of(tmp_path)
+    asked = Store(tmp_path / "store"), verify.all_cases()["small"], "quick"
+    assert outcomes.is_kept(*asked)
+    if why == "damaged":
+        (entry,) = [entry for entry in Store(tmp_path / "store").entries() if entry.kind == "outcome"]
+        assert entry.what == "small, quick" and entry.state == "current"
+        flipped(entry.path, entry.size // 2)
+    with monkeypatch.context() as patched:
+        if why == "other code":
+            patched.setattr(outcomes, "version_of_cases", lambda: "f" * 64)
+            assert not outcomes.is_kept(*asked)
+        elif why == "another scene":
+            patched.setattr(outcomes, "present", lambda name: b"title")
+        solves = report_of(tmp_path)["solves"]
+    damaged = int(why == "damaged")
+    assert solves == {"solved": 0, "reused": 1, "cases": 0, "stale": 1 - damaged, "damaged": damaged}
+    assert small.runs == 2 and counted == [models.SAM]
+    assert ("small: damaged: " in capsys.readouterr().err) == bool(damaged)
+
+
+NAMES = ("timed", "first", "second")
+PUBLISHED_ROWS = [row(f"{name}.one") for name in NAMES]
+
+
+class Here(Executor):
+    """In place of the processes: this one."""
+
+    alone, most_deaths, lost, started = False, 1, 0, []
+
+    def __init__(self, count, fresh):
+        assert fresh
+        self.executor, self.count = self, count
+
+    def slots(self):
+        return self.count
+
+    def died(self, error):
+        return False
+
+    def submit(self, function, /, *arguments):
+        self.started.append((arguments[0], self.count))
+        future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+class Published:
+    """Cases that solve and draw; a kill strikes the one that is named, after its solve."""
+
+    def __init__(self):
+        self.killed, self.problem, self.runs = set(), "", []
+
+    def case(self, name: str) -> FakeCase:
+        def does(context):
+            self.runs.append(name)
+            outcome = solved(context, f"{name}.one")
+            if name in self.killed:
+                self.killed.remove(name)
+                raise KeyboardInterrupt
+            if name == self.problem:
+                raise RuntimeError("no")
+            return outcome
+
+        return FakeCase(name, name, "Does it hold?", alone=name == "timed", does=does)
+
+
+@pytest.fixture
+def published(monkeypatch, counted):
+    made = Published()
+    for module in (publishing, freshness):
+        monkeypatch.setattr(module, "all_cases", lambda: {name: made.case(name) for name in NAMES})
+    for module in (verify, freshness):
+        monkeypatch.setattr(module, "load_rows", lambda: PUBLISHED_ROWS)
+    monkeypatch.setattr(publishing, "Processes", Here)
+    monkeypatch.setattr(Here, "started", [])
+    return made
+
+
+def publish_in(base, out="out", store="store", code=0) -> dict[str, bytes]:
+    """The figures and the table of gates."""
+    where = {"out": base / out, "store": base / store}
+    assert publishing.publish([], level="full", workers=2, **where) == code
+    paths = *(base / out / "figures").iterdir(), base / out / "gates.csv"
+    return {path.name: path.read_bytes() for path in paths}
+
+
+def test_killed_twice_it_gives_the_same_gates_and_figures_and_repeats_nothing(tmp_path, published, counted):
+    published.killed = {"second", "timed"}
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            publish_in(tmp_path)
+        assert not (tmp_path / "out" / "results.json").exists()
+    found = publish_in(tmp_path)
+    assert published.runs == ["first", "second", "second", "timed", "timed"] and counted == [models.SAM]
+    assert found == publish_in(tmp_path, "other", "other-store")
+    assert {"gates.csv", *(f"{name}-curve.png" for name in NAMES)} <= found.keys()
+    table = tmp_path / "other" / "figures" / "first-curve.csv"
+    table.write_text("x,y\n" * 2000)
+    figure = outcomes.packed(Figure("", "", "", "", "figures/first-curve.csv"), tmp_path / "other")
+    assert gzip.decompress((tmp_path / "other" / figure.csv).read_bytes()) == b"x,y\n" * 2000
+    assert outcomes.packed(figure, tmp_path / "other") == figure and not table.exists()
+    assert not (tmp_path / "store" / publishing.SCRATCH).exists()
+    assert not (tmp_path / "out" / "runs").exists()
+
+
+def test_what_measures_times_runs_last_and_alone_and_is_kept_too(tmp_path, published):
+    first = publish_in(tmp_path)
+    assert Here.started == [("first", 2), ("second", 2), ("timed", 1)]
+    assert publish_in(tmp_path, "again") == first and len(published.runs) == 3
+    before = results(tmp_path / "out")
+    assert (
+        publish_in(tmp_path, store="new") == first and len(published.runs) == 3
+    )  # of this code, without a store
+    assert [results(tmp_path / "out")[key] for key in ("cases", "gates")] == [
+        before["cases"],
+        before["gates"],
+    ]
+
+
+def test_a_case_that_breaks_off_is_red_and_runs_again(tmp_path, published, capsys):
+    published.problem = "second"
+    publish_in(tmp_path, code=1)
+    cases = results(tmp_path / "out")["cases"]
+    status = {case["name"]: (case["status"], case["failure"][:16]) for case in cases}
+    assert status["second"] == ("failed", "RuntimeError: no") and status["first"] == ("passed", "")
+    assert "of 3: second: RuntimeError: no" in capsys.readouterr().out
+    published.problem = ""
+    publish_in(tmp_path)
+    assert published.runs == ["first", "second", "timed", "second"]
+
+
+def test_an_unknown_case_and_a_folder_of_something_else_are_refused(tmp_path, published, capsys):
+    where = {"level": "full", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish(["frist"], out=tmp_path / "out", **where) == 2
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("mine")
+    assert publishing.publish([], out=tmp_path / "mine", **where) == 2
+    assert "first" in (said := capsys.readouterr().err) and "no verification report" in said
+    assert published.runs == []
+
+
+def test_a_report_of_another_level_is_left_alone(tmp_path, published, capsys):
+    before = publish_in(tmp_path)
+    where = {"out": tmp_path / "out", "store": tmp_path / "store", "workers": 2}
+    assert publishing.publish([], level="quick", **where) == 2
+    assert "out holds a report of level full: choose another folder" in capsys.readouterr().err
+    assert publish_in(tmp_path) == before
+
+
+def test_a_case_that_belongs_to_another_level_now_is_left_out(tmp_path, published, monkeypatch):
+    publish_in(tmp_path)
+    monkeypatch.setattr(FakeCase, "published_at", lambda case, _: case.name != "second")
+    assert not any(name.startswith("second") for name in publish_in(tmp_path))

@@ -83,9 +83,3 @@ class TestTheClosedFormOfSam:
     def test_the_radius_is_found_from_either(self, a):
         assert self.PUNCH.contact_radius(self.PUNCH.force(a, 1e9), 1e9) == pytest.approx(a, rel=1e-9, abs=0)
         assert self.PUNCH.radius_at(self.PUNCH.approach(a)) == pytest.approx(a, rel=1e-9, abs=0)
-
-    def test_the_gap_is_a_parabola_beyond_the_flat_end(self):
-        grid = sam.choose_grid(pressed(grid={"cells": (52, 52)}))
-        r = np.hypot(grid.x[:, None], grid.y[None, :])
-        wanted = np.where(r > FLAT, (r - FLAT) ** 2 / (2 * EDGE), 0.0)
-        assert SamPunch(FLAT, EDGE).gap(grid) == pytest.approx(wanted, rel=1e-9, abs=0)

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from fake_case import row
+from made_results import row
 
 from sam.scene import SceneError
 from verification.cases import LEVELS, all_cases

@@ -8,9 +8,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from made_histories import as_the_paper_says, at_rest, result_of
+from made_histories import (
+    GOOD,
+    SCENES,
+    as_the_paper_says,
+    at_rest,
+    framed_physics,
+    over_inputs,
+    over_physics,
+    result_of,
+)
 from made_results import Made, context, of_frame, of_plane, red
-from made_studies import GOOD, SCENES, framed_physics, over_inputs, over_physics
 
 from fem_reference.spatial import WornCycle
 from sam.scene import GridFields, Plasticity, resolved
@@ -26,23 +34,6 @@ from verification.cases.running_in.running_in import PRINTED as PRINTED_READING
 from verification.cases.running_in.running_in_converged import DEFAULT, SEEDS
 from verification.cases.running_in.running_in_physics import ALL
 from verification.cases.running_in.running_in_sensitivity import INPUTS, PRINTED, scene_at, wilson
-from verification.cases.running_in.study import (
-    BULK,
-    CUBIC,
-    LAST,
-    MODULI,
-    NAMES,
-    PARTS,
-    RECOVERY,
-    SHARES,
-    STATEMENTS,
-    A,
-    B,
-    Run,
-    apart_from_campaign,
-    campaigns,
-    framed,
-)
 from verification.figures.check import findings
 from verification.runs.store import Reuse
 from verification.scenes.asperities import SIDE
@@ -76,12 +67,12 @@ class TestInputs:
     @pytest.mark.parametrize("name", [one.name for one in INPUTS])
     def test_an_input_changes_the_scenes_that_it_is_about_and_no_others(self, name):
         """Each of the others is in the middle of its range."""
-        for case in (BULK, A):
+        for case in (study.BULK, study.A):
             shares = ([end if one.name == name else 0.5 for one in INPUTS] for end in (0.05, 0.95))
             low, high = (resolved(scene_at(SCENES[case], each)) for each in shares)
-            assert (low != high) == (case == A or name not in OF_THE_LAYER)
+            assert (low != high) == (case == study.A or name not in OF_THE_LAYER)
 
-    @pytest.mark.parametrize("case", [BULK, A])
+    @pytest.mark.parametrize("case", [study.BULK, study.A])
     def test_the_printed_inputs_are_those_of_the_scenes(self, case):
         own = resolved(SCENES[case])
         again = resolved(scene_at(SCENES[case], PRINTED))
@@ -93,12 +84,12 @@ class TestInputs:
     def test_tables_and_figures_can_be_read(self, found):
         tables = readable(self.CASE, found)
         statements = next(table for table in tables if table.caption.startswith("Probability"))
-        assert len(statements.rows) == len(STATEMENTS)
+        assert len(statements.rows) == len(study.STATEMENTS)
         assert sum("deviation of the layer" in row[4] for row in statements.rows) >= 10
         said = self.CASE.data(found)["statements"]
         assert [f"{each['holds']} of {each['of']}" for each in said] == [row[2] for row in statements.rows]
-        short = Run(found.frame["run"].iloc[0].scene.model_copy(deep=True), Made())
-        short.scene.loading.__dict__["cycles"] = LAST - 1
+        short = study.Run(found.frame["run"].iloc[0].scene.model_copy(deep=True), Made())
+        short.scene.loading.__dict__["cycles"] = study.LAST - 1
         fewer = replace(found, frame=found.frame.assign(run=short))
         assert not fewer.judged and self.CASE.data(fewer) == {} and list(self.CASE.figures(fewer)) == []
 
@@ -120,7 +111,7 @@ def _close(tree):
 
 
 @pytest.mark.parametrize(
-    ("name", "count"), [("running-in-physics", len(ALL) * len(NAMES)), ("running-in-readings", None)]
+    ("name", "count"), [("running-in-physics", len(ALL) * len(study.NAMES)), ("running-in-readings", None)]
 )
 def test_every_run_is_another_scene_surface_by_surface(name, count, tmp_path):
     labels, scenes = zip(*all_cases()[name].scenes(context(name, tmp_path)).values(), strict=True)
@@ -136,10 +127,17 @@ class TestPhysics:
         readable(self.CASE, over_physics())
         runs = {tuple(row[:3]): row.run for row in over_physics().itertuples(index=False)}
         assert red(self.CASE.name, self.CASE.measure(framed_physics(runs)), whole=True) == set()
-        own = as_the_paper_says()[B]
-        first = {(GOOD, B, 2): Run(SCENES[B], result_of(replace(own, volume=own.volume * (1.0 + 1e-9))))}
+        own = as_the_paper_says()[study.B]
+        first = {
+            (GOOD, study.B, 2): study.Run(
+                SCENES[study.B], result_of(replace(own, volume=own.volume * (1.0 + 1e-9)))
+            )
+        }
         assert red(self.CASE.name, self.CASE.measure(framed_physics(runs | first))) == {"first-cycle"}
-        lost = {(each, BULK, 2): Run(SCENES[BULK], Made(converged=False)) for each in list(ALL)[:7]}
+        lost = {
+            (each, study.BULK, 2): study.Run(SCENES[study.BULK], Made(converged=False))
+            for each in list(ALL)[:7]
+        }
         found = framed_physics(runs | lost)
         assert red(self.CASE.name, self.CASE.measure(found)) == {"lost"}
         under, hold = self.CASE.tables(found)
@@ -160,17 +158,17 @@ class TestReadings:
         runs, said = {}, as_the_paper_says()
         for reading, case in np.ndindex(len(words.READINGS), len(words.NAMES)):
             (label, one), material = list(words.READINGS.items())[reading], list(words.NAMES)[case]
-            own = said[B if material == words.C else material]
+            own = said[study.B if material == words.C else material]
             result = result_of(own if label == name else at_rest(own))
             cycles = dict(result.tables["cycles"])
             cycles |= {"raw_volume_m3": cycles["wear_of_cycle_m3"] * (1 + wrong)}
-            cycles |= {"filled_volume_m3": np.ones(LAST), "roof_volume_m3": np.ones(LAST)}
-            cycles |= {"yield_excess": np.full(LAST, excess), "flow_residual": np.ones(LAST)}
-            cycles |= {"peeq_max": np.ones(LAST)}
-            scene = one.change(SCENES[B if material == words.C else material])
+            cycles |= {"filled_volume_m3": np.ones(study.LAST), "roof_volume_m3": np.ones(study.LAST)}
+            cycles |= {"yield_excess": np.full(study.LAST, excess), "flow_residual": np.ones(study.LAST)}
+            cycles |= {"peeq_max": np.ones(study.LAST)}
+            scene = one.change(SCENES[study.B if material == words.C else material])
             made = replace(result, tables=result.tables | {"cycles": cycles})
-            runs[label, material, 2] = Run(scene, made, kept=study.Kept(made, "", ""))
-        return framed(runs, PARTS, self.CASE.numbers).assign(coarse=False)
+            runs[label, material, 2] = study.Run(scene, made, kept=study.Kept(made, "", ""))
+        return study.framed(runs, study.PARTS, self.CASE.numbers).assign(coarse=False)
 
     def test_statements_hold_where_the_runs_are_as_the_paper_says(self):
         """All but that the largest pressure of hardening falls, which made runs do not tell."""
@@ -198,7 +196,7 @@ class TestCampaign:
     def made(self, tmp_path, monkeypatch):
         """A case, its context at the full level, and the labels that it solves. Of a label: its history."""
 
-        def of(name, history=lambda label: as_the_paper_says()[A]):
+        def of(name, history=lambda label: as_the_paper_says()[study.A]):
             own, solved = context(name, tmp_path, level="full"), []
 
             def solve(model, scene, label, *, demand):
@@ -209,14 +207,14 @@ class TestCampaign:
             monkeypatch.setattr(own, "solve", solve)
             return replace(all_cases()[name]), own, solved
 
-        campaigns.cache_clear()  # they are read once in a process
+        study.campaigns.cache_clear()  # they are read once in a process
         yield of
-        campaigns.cache_clear()
+        study.campaigns.cache_clear()
 
     def test_runs_are_taken_from_it_and_some_are_solved_again_and_held_against_it(
         self, made, tmp_path, monkeypatch
     ):
-        said, off = as_the_paper_says()[A], [0.0]
+        said, off = as_the_paper_says()[study.A], [0.0]
         case, own, solved = made(
             "running-in-readings", lambda _: replace(said, friction=said.friction + off[0])
         )
@@ -225,24 +223,26 @@ class TestCampaign:
         monkeypatch.setattr(type(case), "scenes", lambda *_: wanted)
         monkeypatch.setattr(study, "FOLDER", tmp_path)
         before = case.runs(own)
-        assert len(solved) == len(before) == 12 and np.isnan(apart_from_campaign(framed(before, PARTS)))
+        assert len(solved) == len(before) == 12 and np.isnan(
+            study.apart_from_campaign(study.framed(before, study.PARTS))
+        )
         case.keep(own, tmp_path / f"{case.name}.csv.gz")
-        campaigns.cache_clear()
+        study.campaigns.cache_clear()
         solved.clear()
         off[0] = 0.03
-        after = framed(case.runs(own), PARTS, case.numbers)
-        assert solved == [wanted[one, A, 2][0]]
-        assert apart_from_campaign(after) == pytest.approx([0.03], rel=1e-4)
+        after = study.framed(case.runs(own), study.PARTS, case.numbers)
+        assert solved == [wanted[one, study.A, 2][0]]
+        assert study.apart_from_campaign(after) == pytest.approx([0.03], rel=1e-4)
         told = f"Taken from campaigns ({case.name}: 12 runs, commit abcdefg, 2026-01-02): 11 of 12 runs"
         assert list(case.told_of_campaign(after)) == [
             f"{told}; solved again and held against them: 1, whose friction differs in any cycle by 0.03 in "
             "the median and 0.03 at most."
         ]
-        assert list(case.ahead(own)) == [wanted[one, A, 2][1]]
-        kept = after.set_index("material").loc[B, "run"].iloc[0].history
-        np.testing.assert_allclose(kept.volume, as_the_paper_says()[A].volume, rtol=1e-5)
+        assert list(case.ahead(own)) == [wanted[one, study.A, 2][1]]
+        kept = after.set_index("material").loc[study.B, "run"].iloc[0].history
+        np.testing.assert_allclose(kept.volume, as_the_paper_says()[study.A].volume, rtol=1e-5)
         assert case.measure(after)["campaign"].value == pytest.approx(0.03, rel=1e-4)
-        assert study.solved_of(after).index.tolist() == [list(wanted).index((one, A, 2))]
+        assert study.solved_of(after).index.tolist() == [list(wanted).index((one, study.A, 2))]
 
     @pytest.mark.parametrize(("name", "again"), [("running-in-physics", 24), ("running-in-sensitivity", 5)])
     def test_a_study_of_a_campaign_has_all_rows_tables_and_notes(
@@ -250,12 +250,12 @@ class TestCampaign:
     ):
         said = as_the_paper_says()
         case, own, solved = made(
-            name, lambda label: said[next(each for each in NAMES if f"{each}-seed" in label)]
+            name, lambda label: said[next(each for each in study.NAMES if f"{each}-seed" in label)]
         )
         monkeypatch.setattr(study, "FOLDER", tmp_path)
         case.keep(own, tmp_path / f"{name}.csv.gz")
         every = len(solved)
-        campaigns.cache_clear()
+        study.campaigns.cache_clear()
         solved.clear()
         found = case.solve(own)
         assert len(solved) == again and red(name, case.measure(found), whole=True) == set()
@@ -265,7 +265,7 @@ class TestCampaign:
     def test_what_another_study_has_is_taken_from_there_and_not_kept_again(self, made, tmp_path):
         """running-in solves what its own campaign is to have: the printed reading is that of the readings."""
         case, own, solved = made("running-in")
-        printed = len(case.readings(own)[PRINTED_READING].effort.seeds) * len(NAMES)
+        printed = len(case.readings(own)[PRINTED_READING].effort.seeds) * len(study.NAMES)
         case.keep(own, tmp_path / "kept.csv.gz")
         assert len(solved) == len(case.scenes(own)) - printed and all("renewed" in each for each in solved)
         assert gzip.decompress((tmp_path / "kept.csv.gz").read_bytes()).startswith(b"# %d runs" % len(solved))
@@ -287,7 +287,9 @@ class TestCampaign:
         )
         alike, straight = "hardening: wears as much as bulk", "curve B: still wears linearly"
         hard, (line, filled) = told(falls, alike), (told(each, straight) for each in (stays, fills))
-        late = found[(found["reading"] == fills) & (found["material"] == B)][["filled", "steady"]].median()
+        late = found[(found["reading"] == fills) & (found["material"] == study.B)][
+            ["filled", "steady"]
+        ].median()
         guide, readme = (
             " ".join((ROOT / name).read_text().split()) for name in ("docs/guide/limits.md", "README.md")
         )
@@ -297,7 +299,7 @@ class TestCampaign:
         assert f"{len(judged)} readings of its words {ends} hold." in readme
         assert f"({hard[0]} of its volume, on {hard[1]} of {hard[2]} surfaces; 0 where" in guide
         assert f"(R² {filled[0]}, on {filled[1]} of {filled[2]} surfaces; {line[0]} otherwise)" in guide
-        assert "{:.1f} of the {:.1f} µm³".format(*(CUBIC * late)) in guide
+        assert "{:.1f} of the {:.1f} µm³".format(*(study.CUBIC * late)) in guide
         assert f"friction is then {told(fills, 'curve B: the whole surface protected')[0]}," in guide
 
 
@@ -329,7 +331,7 @@ class TestConverged:
         """By a whole cell the same heights are one cell further, and fine cells hold those of coarse ones."""
 
         def heights(cells, shift=0.0):
-            return converged.shifted(SCENES[BULK].surface, 3, cells, shift).measured.values
+            return converged.shifted(SCENES[study.BULK].surface, 3, cells, shift).measured.values
 
         assert heights(45, 1.0)[1:, 1:] == pytest.approx(heights(45)[:-1, :-1], abs=1e-18)
         assert heights(75)[1::3, 1::3] == pytest.approx(heights(25), abs=1e-18)
@@ -357,18 +359,20 @@ class TestKinematic:
 
         def made(strain, good=True):
             history = {"peeq_max": [0.0] * (kinematic.EFFORT.steps - 1) + [strain]}
-            return Run(SCENES[BULK], Made(tables={"cycles": cycles, "history": history}, converged=good))
+            return study.Run(
+                SCENES[study.BULK], Made(tables={"cycles": cycles, "history": history}, converged=good)
+            )
 
-        runs = {name: made(1e-3) for name in SHARES} | {"kinematic": made(first, converged)}
+        runs = {name: made(1e-3) for name in study.SHARES} | {"kinematic": made(first, converged)}
         return [
             {"material": name, "hardening": way} | kinematic.row(run, runs["isotropic"], fit)
-            for name in NAMES.values()
+            for name in study.NAMES.values()
             for way, run in runs.items()
         ]
 
     def test_rows_hold_right_numbers_and_turn_red(self):
         name, rows = "running-in-kinematic", self.rows()
-        assert wrong(name, rows) == set() and len(MODULI) == len(RECOVERY) == 5
+        assert wrong(name, rows) == set() and len(study.MODULI) == len(study.RECOVERY) == 5
         assert rows[0]["late over early"] == pytest.approx(0.5)
         worse = self.rows(fit=0.01, first=1.2e-3, converged=False)
         assert wrong(name, worse) == {"fit", "first-loading", "converged"}

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The store: bit for bit what was computed, and nothing that is stale, damaged, another's or half-written."""
+"""The store: bit for bit what was computed, nothing that is stale, damaged, another's or half-written."""
 
 import errno
+import json
 import multiprocessing
 import os
 import shutil
@@ -13,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import PERFECT, SPHERE, STEEL, scene_text
-from stored import BOTH, COARSE, flipped, same
+from stored import BOTH, COARSE, COARSE_KEYS, flipped, same
 
 from sam.scene import Scene, Section, Status, load_scene, read_scene, resolved
 from verification.runs import checkpoints, models, store
@@ -278,3 +279,65 @@ def test_the_folder_of_the_store(monkeypatch, tmp_path):
     for caches, expected in ((str(tmp_path / "c"), tmp_path / "c"), ("", usual), ("c", usual)):
         monkeypatch.setenv("XDG_CACHE_HOME", caches)
         assert store.default_store().folder == expected / "samfem"
+
+
+# the commands
+
+
+@pytest.fixture
+def folder(folder, monkeypatch):
+    """The current folder with coarse.toml, and a store of its own."""
+    monkeypatch.setenv(store.FOLDER, str(folder / "store"))
+    (folder / "coarse.toml").write_text(scene_text(add=COARSE_KEYS))
+    return folder
+
+
+def test_compare_solves_once_and_what_solve_left_not_at_all(folder, counted, samfem):
+    samfem("solve", "coarse.toml", "--model", models.FEM)
+    assert counted == [models.FEM]
+    said = samfem("compare", "coarse.toml", code=1).err
+    assert counted == [models.FEM, models.SAM]
+    assert "fem-axisymmetric: taken from the store: computed 20" in said
+    first = (folder / "coarse-compare" / "compare.csv").read_bytes()
+    samfem("compare", "coarse.toml", code=1)
+    assert counted == [models.FEM, models.SAM]
+    assert (folder / "coarse-compare" / "compare.csv").read_bytes() == first
+    summary = json.loads((folder / "coarse-compare" / "sam" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["provenance"]["from_store"]["computed_utc"].startswith("20")
+    samfem("solve", "coarse.toml", "--model", models.FEM)
+    assert counted == [models.FEM, models.SAM, models.FEM]  # solve always solves
+    kept = len(list((folder / "store").iterdir()))
+    assert "store" not in samfem("compare", "coarse.toml", "--no-store", code=1).err
+    assert counted[3:] == [*BOTH] and len(list((folder / "store").iterdir())) == kept
+
+
+def test_store_lists_and_prunes(folder, counted, samfem, monkeypatch):
+    assert "0 entries" in samfem("store").out
+    samfem("compare", "coarse.toml", code=1)
+    listed = samfem("store").out
+    assert "2 entries (2 current, 0 stale, 0 damaged), 0 left over" in listed and "fem-axisymmetric" in listed
+    keys = [path.stem for path in (folder / "store").iterdir()]
+    assert all(key[:12] in listed for key in keys)
+    assert "0 removed, 0 B freed" in samfem("store", "--prune", "--older-than", "1").out
+    flipped(folder / "store" / f"{keys[0]}.npz", 40)
+    size = (folder / "store" / f"{keys[0]}.npz").stat().st_size
+    said = samfem("store", "--prune").out
+    assert f"removed {keys[0][:12]}" in said and "1 removed" in said and f"{size / 1e3:.0f} kB freed" in said
+    monkeypatch.setattr(store.Entry, "age_days", 3.0)
+    assert "0 removed" in samfem("store", "--prune", "--older-than", "4").out
+    assert "1 removed" in samfem("store", "--prune", "--older-than", "2").out
+    samfem("compare", "coarse.toml", code=1)
+    assert "2 removed" in samfem("store", "--prune", "all").out
+    assert list((folder / "store").iterdir()) == []
+
+
+def test_store_refuses_what_could_be_misread(refused):
+    for words in (["--older-than", "3"], ["--prune", "all", "--older-than", "3"], ["--prune", "x"]):
+        assert "--" in refused("store", *words)
+    for days in ("-1", "nan", "inf", "many"):
+        assert "--older-than" in refused("store", "--prune", "--older-than", days)
+
+
+def test_store_says_when_there_is_none(monkeypatch, samfem):
+    monkeypatch.setenv(store.FOLDER, "")
+    assert "no store" in samfem("store", "--prune").out
