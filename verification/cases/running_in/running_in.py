@@ -177,7 +177,7 @@ class RunningIn(Readings):
                 f"Running-in, {NAMES[case]}, {WORDS[reading]}",
                 f"The panels show what the paper's Fig. {FIGURES[case]} does, on our surface "
                 f"{one.scene.surface.seed} alone: (a) and (b) after the last cycle, (e) and (f) at its peak. "
-                "What is not worn or not in contact is grey.",
+                "What is not worn or not in contact is grey; (b) is a shaded relief.",
             )
 
     def views(self, found: DataFrame) -> Iterator[View]:

@@ -46,7 +46,7 @@ WHOLE = Effort(LAST, STEPS, 64, tuple(NAMES), tuple(range(1, 11)))
 QUARTER = Effort(LAST, STEPS, 32, tuple(NAMES), (2, 4, 6))
 ROOFS, FILTERS = {"roof stays": "stays", "roof falls": "falls"}, {"removes all": False, "fills": True}
 """In words -> keys of [wear]."""
-PRINTED, SECOND, SMALL = "printed inputs", "second reading", "printed inputs, quarter"
+PRINTED, SECOND, SMALL = "printed inputs", "second reading, quarter", "printed inputs, quarter"
 FINE, FILM = "cells of 0.457 µm, quarter", "film by Eq. 12 to 14"
 LOOP, LOOSE = "printed loop", "printed loop, 2 %"
 FINER, WINDOW = 70, 11  # cells along 32 um, 0.457 um each, and in the window of smoothing, 5 um

@@ -239,9 +239,9 @@ def times(evidence: Evidence, _: str) -> Iterator[Finding]:
     if both := sorted((each for each in costs if each.ratio > 0.0), key=lambda each: each.ratio):
         bounds = sum(each.sam[1] or each.fem[1] for each in both)
         words = (
-            "the processor time of SAM is needed by the faster FEM model for an error of 1 %, in "
-            f"{len(both)} of {len(costs)} contacts{f' ({bounds} of them as bounds)' * bool(bounds)}; the "
-            "other ratios are unknown"
+            "the processor time of SAM is needed by the faster FEM model for an error of 1 %, over the "
+            f"{len(both)} of {len(costs)} contacts in which both times are known"
+            f"{f', {bounds} of them as bounds' * bool(bounds)}"
         )
         ran = (evidence.stored.ran["work-precision"],)
         yield Finding(words, f"{both[0].shown} to {both[-1].shown} times", ran)
