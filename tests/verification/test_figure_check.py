@@ -1,12 +1,17 @@
-"""Each rule of a figure finds what breaks it, and a sweep is drawn with each value at its point."""
+"""Each rule of a figure finds what breaks it, its picture keeps its colours, and a sweep is drawn with each
+value at its point.
+"""
+
+import io
 
 import numpy as np
 import pytest
 from builders import scene_text
 from matplotlib.ticker import FixedLocator
+from PIL import Image
 
 from verification.figures.check import findings
-from verification.figures.style import BLUE, VERMILION, sheet
+from verification.figures.style import BLUE, VERMILION, encoded, sheet
 from verification.figures.sweep import summary
 from verification.runs.study import read_study
 
@@ -73,6 +78,24 @@ def test_a_map_has_a_colour_bar_which_belongs_to_the_panel_beside_it(place, expe
             figure.colorbar(one, ax=axes[place])
     found = findings(figure)
     assert (expected in " ".join(found)) if expected else found == []
+
+
+def test_the_palette_of_a_picture_keeps_the_colours_of_its_bars():
+    """Two maps of 256 colours beside each other, whose values take up only the lower half of the second."""
+    with sheet(8.0, 3.0, 2) as (figure, axes):
+        for axis, look in zip(
+            axes, ({"cmap": "viridis"}, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0}), strict=True
+        ):
+            values = np.sin(np.linspace(0.0, np.pi, 1600)).reshape(40, 40)
+            figure.colorbar(axis.pcolormesh(-values, **look), ax=axis, orientation="horizontal")
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # which would move the panels a little each time
+    exact, small = (
+        np.asarray(Image.open(io.BytesIO(encoded(figure, small=small))).convert("RGB"), dtype=int)
+        for small in (False, True)
+    )
+    # by some of 255 where neighbours in a map share a colour, or shades of letters and lines
+    assert np.abs(small - exact).max() < 16
 
 
 # the figure of a sweep

@@ -63,5 +63,6 @@ def overview(times: Mapping[str, Mapping[str, Reached]], error: str) -> Drawing:
         if not any(rows["cpu_s"]):
             axis.set_xlim(0.1, 10.0)  # nothing to choose them from
         log_ticks(axis.xaxis)
-        figure.legend(loc="outside right upper")
+        if there:
+            figure.legend(loc="outside right upper")
     return Drawing(figure, rows)
