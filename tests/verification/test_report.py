@@ -121,6 +121,16 @@ def test_folder_with_other_files_is_left_alone(tmp_path, capsys):
     assert [path.name for path in tmp_path.rglob("*")] == ["holiday.png"]
 
 
+def test_a_case_of_the_suite_from_end_to_end(tmp_path, monkeypatch):
+    """The ellipse is the quickest; its report holds the page, the figures and the run."""
+    monkeypatch.undo()
+    assert run(tmp_path, "hertz-ellipse") == 0
+    assert (tmp_path / "elastic.html").stat().st_size > 0
+    assert (tmp_path / "runs/hertz-ellipse/sam/summary.json").stat().st_size > 0
+    for kind in ("png", "csv.gz"):
+        assert (tmp_path / "figures" / f"hertz-ellipse-pressure-maps.{kind}").stat().st_size > 1000
+
+
 def test_a_solve_that_does_not_converge_breaks_its_case_off(tmp_path):
     here = context("test", tmp_path)
     small = parsed(add='[grid]\nextent = ["5 um", "5 um"]\n')  # than the contact
