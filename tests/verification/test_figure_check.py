@@ -11,7 +11,7 @@ from matplotlib.ticker import FixedLocator
 from PIL import Image
 
 from verification.figures.check import findings
-from verification.figures.style import BLUE, VERMILION, encoded, sheet
+from verification.figures.style import BLUE, GREEN, VERMILION, encoded, sheet
 from verification.figures.sweep import summary
 from verification.runs.study import read_study
 
@@ -22,6 +22,11 @@ def named_beside(figure, axis):
     axis.get_legend().remove()
     axis.text(5.0, 4.0, "one", color=BLUE)
     axis.text(5.0, 12.0, "two", color=VERMILION)
+
+
+def with_bound(figure, axis):
+    axis.errorbar([5.0], [5.0], xerr=[1.0], xuplims=True, color=BLUE, label="_")
+    axis.errorbar([np.nan], [5.0], color=GREEN, marker="D")
 
 
 def touching(figure, axis):
@@ -39,6 +44,7 @@ def beyond_the_sheet(figure, axis):
     [
         (lambda figure, axis: None, ""),
         (named_beside, ""),
+        (with_bound, ""),
         (touching, "collide"),
         (beyond_the_sheet, "leaves the sheet"),
         (lambda figure, axis: axis.set_title("p0 = 4 sigma_y0"), "name of a variable"),

@@ -150,18 +150,20 @@ def _of_lines(figure: Figure, panels: list[Axes]) -> Iterator[str]:
 
 
 def _is_drawn(line: Line2D) -> bool:
-    known = np.isfinite(np.asarray(line.get_ydata(), dtype=float))
+    known = np.isfinite(line.get_xydata()).all(axis=1)
     return line.get_visible() and line.get_gid() != GUIDE and bool(known.any())
 
 
 def _look(artist: Artist) -> tuple[tuple[str, str, str], ...]:
-    """What tells a line from others: its colour with its dashes, and with its marker."""
+    """What tells a line from others: its colour with its dashes, and with its marker; the arrow of a bound,
+    which matplotlib numbers, tells nothing.
+    """
     if not isinstance(artist, Line2D):
         return ()
     color, parts = to_hex(artist.get_color()), []
     if artist.get_linestyle() not in _NO_LINE:
         parts.append((color, "line", str(artist.get_linestyle())))
-    if artist.get_marker() not in _NO_LINE:
+    if artist.get_marker() not in _NO_LINE and not isinstance(artist.get_marker(), int):
         parts.append((color, "marker", str(artist.get_marker())))
     return tuple(parts)
 
