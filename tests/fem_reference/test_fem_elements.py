@@ -19,7 +19,7 @@ from fem_reference.axisymmetric import problem as plane
 from fem_reference.axisymmetric.model import axis_pressure, build, hertz_forces as ring_forces
 from fem_reference.axisymmetric.planner import Core, plan, punch_lines, smooth_lines
 from fem_reference.axisymmetric.problem import ContactProblem, refined
-from fem_reference.common.bodies import Elastic
+from fem_reference.common.bodies import Coating, Elastic
 from fem_reference.common.contact import ActiveSet, equilibrium
 from fem_reference.common.elasticity import stiffness_tensor
 from fem_reference.common.far_field import slanted
@@ -103,6 +103,25 @@ def test_patch_is_exact_under_uniform_strain(solid):
     expected = stiffness_tensor(YOUNG, POISSON, len(strain) - 3) @ strain
     assert np.abs(solid.stress(u) - expected[:, None, None]).max() < 1e-11 * np.abs(expected).max()
     assert np.abs(solid.internal_force(solid.stress(u)) - solid.stiffness @ u).max() < 1e-12
+
+
+def test_a_coating_pressed_between_rigid_walls_shares_the_stress_of_the_body_below():
+    """Uniaxial strain: the stress along z is one in both, and each is strained by its own modulus."""
+    film = Coating(thickness=0.25, young=4 * YOUNG, poisson=0.2)
+    mesh = MeshQuad.init_tensor(np.linspace(0.0, 1.0, 3), np.array([0.0, 0.1, 0.25, 0.6, 1.0]))
+    solid = AxisymmetricSolid(mesh, Elastic(YOUNG, POISSON), coating=film)
+    inside = solid.points[-1].mean(axis=1) < film.thickness
+    own = stiffness_tensor(film.young, film.poisson, shears=1)[:, 2]
+    body = stiffness_tensor(YOUNG, POISSON, shears=1)[:, 2]
+    pressed = -1.0 / (film.thickness / own[2] + (1.0 - film.thickness) / body[2])
+    axial, z = solid.basis.get_dofs(elements=True).all("u^2"), solid.basis.doflocs[1]
+    exact = np.zeros(solid.size)
+    known = np.interp(z, [0.0, film.thickness, 1.0], [1.0, 1.0 + pressed * film.thickness / own[2], 0.0])
+    exact[axial] = known[axial]
+    u = solved_from_boundary(solid, exact)
+    assert np.abs(u - exact).max() < 1e-12
+    expected = np.where(inside, (pressed / own[2] * own)[:, None], (pressed / body[2] * body)[:, None])
+    assert np.abs(solid.stress(u) - expected[..., None]).max() < 1e-11 * abs(pressed)
 
 
 def test_stiffness_equals_the_weak_form_of_scikit_fem():
